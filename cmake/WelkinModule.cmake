@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+# Helpers that every folder of the house uses: one library a folder, one unit-test program a folder.
+
+# Compiler settings shared by all of Welkin's own targets.
+# Contraction of a*b+c is off so that a field has the same value with every compiler and instruction set.
+add_library(welkin_settings INTERFACE)
+target_compile_features(welkin_settings INTERFACE cxx_std_20)
+target_compile_options(welkin_settings INTERFACE
+  $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -ffp-contract=off>
+  $<BUILD_INTERFACE:$<$<BOOL:${WELKIN_WARNINGS_AS_ERRORS}>:-Werror>>)
+
+# welkin_module(<folder> SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
+# makes the static library welkin_<folder>, known to others as welkin::<folder>.
+function(welkin_module folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
+  set(target welkin_${folder})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(welkin::${folder} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
+  list(TRANSFORM ARG_DEPENDS PREPEND welkin::)
+  target_link_libraries(${target}
+    PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC_LIBS}
+    PRIVATE $<BUILD_INTERFACE:welkin_settings> ${ARG_PRIVATE_LIBS})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  install(TARGETS ${target} EXPORT welkin-targets)
+endfunction()
+
+# welkin_unit_test(<folder> SOURCES <files> [LIBS <targets>]) makes the GoogleTest program test_<folder>.
+# WELKIN_TEST_DATA_DIR is the absolute path of tests/data.
+function(welkin_unit_test folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(test_${folder} ${ARG_SOURCES})
+  target_link_libraries(test_${folder} PRIVATE welkin::${folder} ${ARG_LIBS} welkin_settings GTest::gtest_main)
+  target_compile_definitions(test_${folder} PRIVATE
+    WELKIN_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data")
+  gtest_discover_tests(test_${folder} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}/" PROPERTIES LABELS unit TIMEOUT 300)
+endfunction()

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws a SkyState: atmosphere, discs, ground and all volumetric layers in one march, accumulated to convergence.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "welkin/core/image.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::render {
+
+struct PassTime {
+  std::string name;
+  double ms = 0.0;  // wall clock, finished on the device
+};
+
+struct Picture {
+  Image<float> luminance;           // RGB, linear Rec. 709, cd/m2
+  double autoExposureEv = 0.0;      // EV at ISO 100 that automatic exposure chooses for it
+  std::vector<PassTime> passes;
+};
+
+// Called with the fraction done in [0, 1]; may throw to stop (Interrupted).
+using Progress = std::function<void(double fraction)>;
+
+// Owns a headless graphics context and everything on it. Not thread-safe: use from the thread that made it.
+class SkyRenderer {
+ public:
+  SkyRenderer();  // throws GpuError where there is no EGL
+  ~SkyRenderer();
+  SkyRenderer(const SkyRenderer&) = delete;
+  SkyRenderer& operator=(const SkyRenderer&) = delete;
+
+  // Draws with the camera and output settings of state.scene.
+  Picture draw(const scene::SkyState& state, const Progress& progress = {});
+
+  std::string deviceName() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace welkin::render

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole description of a picture: place, time, weather, eye, picture. What a scene file says and the command line overrides.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "welkin/core/params.h"
+#include "welkin/sky/atmosphere_params.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::scene {
+
+struct Place {
+  double latitudeDeg = 47.46;   // north positive
+  double longitudeDeg = 8.55;   // east positive
+  double altitudeM = 0.0;       // of the ground above mean sea level
+};
+void describe(Place& p, ParamVisitor& v);
+
+enum class Projection { kPerspective, kFisheye, kEquirect, kCubemap };
+
+// Where the eye is and what it sees. The eye stands over the place.
+struct Camera {
+  double eyeM = 2.0;                    // above the ground
+  std::optional<double> headingDeg;     // clockwise from north; absent: 60 degrees right of the brighter of sun and moon
+  double pitchDeg = 12.0;               // above the horizon
+  double fovDeg = 70.0;                 // across the width of a perspective picture
+  Projection projection = Projection::kPerspective;
+};
+void describe(Camera& c, ParamVisitor& v);
+
+enum class Quality { kLow, kMedium, kHigh, kUltra };
+
+struct Output {
+  std::int64_t width = 1280;             // pixels
+  std::int64_t height = 720;
+  Quality quality = Quality::kMedium;
+  std::optional<double> exposureEv;      // EV at ISO 100; absent: automatic
+  bool sunDisc = true;                   // draw the discs of sun and moon; false leaves their light out of an environment map
+  std::int64_t frames = 1;
+  double fps = 24.0;                     // frames a second of video
+  double speed = 60.0;                   // simulated seconds for each second of video
+};
+void describe(Output& o, ParamVisitor& v);
+
+struct Ground {
+  glm::dvec3 albedo{0.13, 0.14, 0.09};   // linear Rec. 709
+};
+void describe(Ground& g, ParamVisitor& v);
+
+struct Scene {
+  Place place;
+  UtcTime time;                          // the moment at which the weather is as described
+  double atS = 0.0;                      // seconds after `time` at which the (first) picture is taken
+  std::int64_t seed = 1;
+  std::optional<std::string> metar;      // the weather as a report; wins over `layers`
+  std::optional<double> visibilityM;     // absent: from the report, else 40 km
+  std::vector<weather::Layer> layers;    // the weather by hand
+  sky::AtmosphereParams atmosphere;
+  Ground ground;
+  Camera camera;
+  Output output;
+};
+void describe(Scene& s, ParamVisitor& v);
+
+}  // namespace welkin::scene
+
+namespace welkin {
+template <>
+inline constexpr auto kEnumNames<scene::Projection> =
+    std::array<std::string_view, 4>{"perspective", "fisheye", "equirect", "cubemap"};
+template <>
+inline constexpr auto kEnumNames<scene::Quality> =
+    std::array<std::string_view, 4>{"low", "medium", "high", "ultra"};
+}  // namespace welkin

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sky of a scene at one instant, ready to be drawn by any renderer: weather made into fields, cover calibrated, lights placed,
+// atmosphere computed. A pure function of (scene, instant).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "welkin/scene/scene.h"
+#include "welkin/sky/atmosphere.h"
+#include "welkin/sky/ephemeris.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::field {
+class CloudField;
+}
+
+namespace welkin::scene {
+
+struct LayerCover {
+  double requestedOktas = 0.0;
+  double deliveredOktas = 0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
+};
+
+struct SkyState {
+  Scene scene;
+  UtcTime time;                                  // scene.time + secondsAfter
+  double secondsAfter = 0.0;
+  weather::Weather weather;
+  sky::Ephemeris ephemeris;
+  std::vector<sky::Light> lights;                // sun and moon; lights[0] is the one that lights the clouds
+  std::shared_ptr<const sky::Atmosphere> atmosphere;
+  std::shared_ptr<const field::CloudField> clouds;
+  std::vector<LayerCover> cover;                 // a layer each, in the order of weather.layers
+  LayerCover skyCover;                           // the whole sky
+  double headingDeg = 0.0;                       // the camera's, with "absent" resolved
+};
+
+// The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that cannot be read.
+weather::Weather weatherOf(const Scene& scene);
+
+// Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, cover) is taken from `previous` when
+// given, which must come from the same scene; the result is the same either way.
+SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
+
+}  // namespace welkin::scene

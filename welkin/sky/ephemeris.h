@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where sun and moon stand. Geometric directions without refraction, topocentric (the moon's parallax matters: up to 1 degree).
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "welkin/core/utc_time.h"
+
+namespace welkin::sky {
+
+struct Observer {
+  double latitudeDeg = 0.0;    // geodetic, north positive
+  double longitudeDeg = 0.0;   // east positive
+  double altitudeM = 0.0;
+};
+
+struct Body {
+  double azimuthDeg = 0.0;     // clockwise from north, [0, 360)
+  double elevationDeg = 0.0;   // above the horizon
+  double distanceM = 0.0;      // from the observer
+  double angularRadiusRad = 0.0;
+  glm::dvec3 direction{0, 0, 1};  // unit, east-north-up
+};
+
+struct Ephemeris {
+  Body sun;
+  Body moon;
+  double moonIlluminatedFraction = 0.0;  // 0 new, 1 full
+  double moonPhaseAngleRad = 0.0;        // sun-moon-observer; 0 full, pi new
+  double moonIlluminanceLux = 0.0;       // above the atmosphere, facing the moon
+  double sunIlluminanceLux = 0.0;        // above the atmosphere, facing the sun
+};
+
+Ephemeris ephemeris(const UtcTime& time, const Observer& observer);
+
+}  // namespace welkin::sky
