@@ -12,14 +12,9 @@
 
 #include "welkin/core/image.h"
 #include "welkin/sky/atmosphere_params.h"
+#include "welkin/sky/light.h"
 
 namespace welkin::sky {
-
-// A distant light: sun or moon.
-struct Light {
-  glm::vec3 direction{0, 0, 1};      // towards the light, unit, east-north-up
-  glm::vec3 illuminance{0, 0, 0};    // on a plane facing it at the top of the atmosphere, lux
-};
 
 // The atmosphere and the two tables that depend on nothing else. Immutable; safe to share between threads.
 class Atmosphere {

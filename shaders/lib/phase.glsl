@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Phase functions: the density, in 1/sr, with which a scatterer turns light by an angle. Each integrates to 1 over the sphere.
+// c is the cosine of the angle between the way the light travels before and after: 1 is straight on. The mean of c is called g.
+// Shared by C++ and GLSL, see welkin/core/glsl.h; C++ programs use welkin/optics/phase.h.
+
+WELKIN_CONST float kInvFourPi = 0.0795774715f;  // 1 / (4 pi)
+
+WELKIN_FN float phaseIsotropic() { return kInvFourPi; }
+
+// Molecules much smaller than the wavelength (Rayleigh 1871), depolarisation left out.
+WELKIN_FN float phaseRayleigh(float c) { return 0.75f * kInvFourPi * (1.0f + c * c); }
+
+// L. G. Henyey and J. L. Greenstein 1941, "Diffuse radiation in the galaxy". g in (-1, 1) is the mean cosine.
+WELKIN_FN float phaseHenyeyGreenstein(float c, float g) {
+  float d = max(1.0f + g * g - 2.0f * g * c, 1e-7f);
+  return kInvFourPi * (1.0f - g * g) / (d * sqrt(d));
+}
+
+// B. T. Draine 2003, "Scattering by interstellar dust grains. I", eq. 4: Henyey-Greenstein (alpha 0) to Cornette-Shanks (alpha 1),
+// which becomes Rayleigh at g = 0.
+WELKIN_FN float phaseDraine(float c, float g, float alpha) {
+  return phaseHenyeyGreenstein(c, g) * (1.0f + alpha * c * c) / (1.0f + alpha * (1.0f + 2.0f * g * g) / 3.0f);
+}
+
+// Mean cosine of the above.
+WELKIN_FN float draineMeanCosine(float g, float alpha) {
+  return g * (1.0f + alpha * (3.0f + 2.0f * g * g) / 5.0f) / (1.0f + alpha * (1.0f + 2.0f * g * g) / 3.0f);
+}
+
+// Haze: W. M. Cornette and J. G. Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase function".
+// g is the parameter; the mean cosine is a little larger in magnitude: draineMeanCosine(g, 1).
+WELKIN_FN float phaseCornetteShanks(float c, float g) { return phaseDraine(c, g, 1.0f); }
+
+// The parameters of the droplet phase function below.
+struct DropletPhase {
+  float gHg;      // Henyey-Greenstein lobe: the narrow forward peak
+  float gDraine;  // Draine lobe
+  float alpha;
+  float wDraine;  // weight of the Draine lobe
+};
+
+// J. Jendersie and E. d'Eon 2023, "An Approximate Mie Scattering Function for Fog and Cloud Rendering": fit to Mie theory for water
+// droplets of 5 to 50 micrometres diameter, clamped outside. Good from 5 to 60 degrees; about half of Mie sidewards and a quarter
+// at the glory.
+WELKIN_FN DropletPhase dropletPhase(float diameterUm) {
+  float d = clamp(diameterUm, 5.0f, 50.0f);
+  DropletPhase p;
+  p.gHg = exp(-0.0990567f / (d - 1.67154f));
+  p.gDraine = exp(-2.20679f / (d + 3.91029f) - 0.428934f);
+  p.alpha = exp(3.62489f - 8.29288f / (d + 5.52825f));
+  p.wDraine = exp(-0.599085f / (d - 0.641583f) - 0.665888f);
+  return p;
+}
+
+WELKIN_FN float phaseDroplet(float c, DropletPhase p) {
+  return mix(phaseHenyeyGreenstein(c, p.gHg), phaseDraine(c, p.gDraine, p.alpha), p.wDraine);
+}
+
+WELKIN_FN float dropletMeanCosine(DropletPhase p) {
+  return mix(p.gHg, draineMeanCosine(p.gDraine, p.alpha), p.wDraine);
+}

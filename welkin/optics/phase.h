@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Phase functions for C++: the formulas of shaders/lib/phase.glsl, where the citations stand.
+// All are densities in 1/sr that integrate to 1 over the sphere; c is the cosine of the scattering angle, 1
+// straight on. Pure functions, safe from any thread.
+#pragma once
+
+namespace welkin::optics {
+
+float phaseRayleigh(float c);
+float phaseHenyeyGreenstein(float c, float g);
+float phaseDraine(float c, float g, float alpha);
+float phaseCornetteShanks(float c, float g);
+
+// Mean cosine of a Draine (and, with alpha = 1, of a Cornette-Shanks) phase function.
+float draineMeanCosine(float g, float alpha);
+
+// Water droplets by the fit of Jendersie and d'Eon 2023: a Henyey-Greenstein and a Draine lobe.
+struct DropletPhase {
+  float gHg = 0.0f;
+  float gDraine = 0.0f;
+  float alpha = 0.0f;
+  float wDraine = 0.0f;  // weight of the Draine lobe, 0 to 1
+};
+// diameterUm: droplet diameter in micrometres, clamped to the fit's 5 to 50.
+DropletPhase dropletPhase(float diameterUm);
+float phaseDroplet(float c, const DropletPhase& p);
+float dropletMeanCosine(const DropletPhase& p);
+
+}  // namespace welkin::optics

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/sky/ephemeris.h"
+
+#include <erfa.h>
+#include <erfam.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "welkin/core/units.h"
+
+namespace welkin::sky {
+namespace {
+
+constexpr double kSunRadiusM = 695.7e6;    // IAU 2015 resolution B3
+constexpr double kMoonRadiusM = 1737.4e3;  // IAU mean radius
+constexpr double kMoonMeanDistanceM = 384.4e6;
+constexpr double kLightSecondsPerAu = ERFA_AULT;
+
+// Illuminance outside the atmosphere at one astronomical unit: the solar constant 1361 W/m2 at 97.8 lm/W (DIN
+// 5034-2 uses 133.8 klx, IES 133.1 klx).
+constexpr double kSunIlluminanceLux = 133100.0;
+
+// Illuminance by the moon at its mean distance as the phase angle goes to zero, opposition surge left out.
+// With the 10 % that a clear atmosphere keeps back at 60 degrees this gives the 0.216 lux of USNO Circular
+// 171.
+constexpr double kFullMoonIlluminanceLux = 0.279;
+
+// TT - UT1 in seconds before 1972, when UTC was not yet held near UT1 by leap seconds: F. Espenak and J.
+// Meeus 2006, "Five Millennium Canon of Solar Eclipses", polynomials for 1941-1961 and 1961-1986; before 1941
+// a straight line through their values, since the sun's place changes by 0.04 arc seconds a second.
+double deltaTSeconds(double year) {
+  if (year < 1941.0) return -2.8 + (year - 1900.0) * 0.66;
+  if (year < 1961.0) {
+    const double t = year - 1950.0;
+    return 29.07 + 0.407 * t - t * t / 233.0 + t * t * t / 2547.0;
+  }
+  const double t = year - 1975.0;
+  return 45.45 + 1.067 * t - t * t / 260.0 - t * t * t / 718.0;
+}
+
+// A Julian date in the two parts that ERFA likes.
+struct JulianDate {
+  double day = 0.0;       // ends in .5: midnight
+  double fraction = 0.0;  // of a day
+};
+
+JulianDate julianDate(const UtcTime& t) {
+  double mjdZero = 0.0, mjd = 0.0;
+  eraCal2jd(t.year, t.month, t.day, &mjdZero, &mjd);
+  return {mjdZero + mjd, (t.hour * 3600.0 + t.minute * 60.0 + t.second) / ERFA_DAYSEC};
+}
+
+// Terrestrial time from UTC. Since 1972 by the leap seconds that ERFA knows (after its last one the offset
+// stays); before, UTC is read as UT1.
+JulianDate terrestrialTime(const UtcTime& t, const JulianDate& utc) {
+  double offset = 0.0;
+  if (t.year >= 1972) {
+    double leapSeconds = 0.0;
+    eraDat(t.year, t.month, t.day, 0.0,
+           &leapSeconds);  // a warning status for years beyond the table is expected
+    offset = leapSeconds + ERFA_TTMTAI;
+  } else {
+    offset = deltaTSeconds(t.year + (t.month - 0.5) / 12.0);
+  }
+  return {utc.day, utc.fraction + offset / ERFA_DAYSEC};
+}
+
+glm::dvec3 toVec(const double p[3]) {
+  return {p[0], p[1], p[2]};
+}
+
+Body bodyAt(const glm::dvec3& enuM, double radiusM) {
+  Body b;
+  b.distanceM = glm::length(enuM);
+  b.direction = enuM / b.distanceM;
+  b.elevationDeg = degrees(std::atan2(b.direction.z, std::hypot(b.direction.x, b.direction.y)));
+  b.azimuthDeg = degrees(std::atan2(b.direction.x, b.direction.y));
+  if (b.azimuthDeg < 0.0) b.azimuthDeg += 360.0;
+  if (b.azimuthDeg >= 360.0) b.azimuthDeg = 0.0;
+  b.angularRadiusRad = std::asin(std::min(radiusM / b.distanceM, 1.0));
+  return b;
+}
+
+// Magnitudes lost at a phase angle: C. W. Allen 1976, "Astrophysical Quantities", as given by K. Krisciunas
+// and B. E. Schaefer 1991, "A model of the brightness of moonlight", eq. 9.
+double moonPhaseMagnitudes(double phaseAngleRad) {
+  const double a = degrees(std::abs(phaseAngleRad));
+  return 0.026 * a + 4.0e-9 * a * a * a * a;
+}
+
+}  // namespace
+
+Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
+  const JulianDate ut1 =
+      julianDate(time);  // UTC stays within 0.9 s of UT1: at most 0.004 degrees of hour angle
+  const JulianDate tt = terrestrialTime(time, ut1);  // TDB differs by 2 ms at most
+
+  // Sun: astrometric direction of date, then annual aberration (20 arc seconds) from the earth's barycentric
+  // velocity.
+  double pvHeliocentric[2][3], pvBarycentric[2][3];
+  eraEpv00(tt.day, tt.fraction, pvHeliocentric, pvBarycentric);
+  const glm::dvec3 earthAu = toVec(pvHeliocentric[0]);
+  const double sunDistanceAu = glm::length(earthAu);
+  double natural[3], velocity[3], proper[3];
+  for (int i = 0; i < 3; ++i) {
+    natural[i] = -earthAu[i] / sunDistanceAu;
+    velocity[i] = pvBarycentric[1][i] * kLightSecondsPerAu / ERFA_DAYSEC;  // in units of c
+  }
+  const double lorentz = std::sqrt(1.0 - glm::dot(toVec(velocity), toVec(velocity)));
+  eraAb(natural, velocity, sunDistanceAu, lorentz, proper);
+  const glm::dvec3 sunGcrsM = toVec(proper) * (sunDistanceAu * ERFA_DAU);
+
+  // Moon: it shares the earth's motion, so light time and aberration together are its own motion during 1.3
+  // s.
+  double pvMoon[2][3];
+  eraMoon98(tt.day, tt.fraction, pvMoon);
+  const double moonLightDays = glm::length(toVec(pvMoon[0])) * kLightSecondsPerAu / ERFA_DAYSEC;
+  const glm::dvec3 moonGcrsM = (toVec(pvMoon[0]) - toVec(pvMoon[1]) * moonLightDays) * ERFA_DAU;
+
+  // Celestial to terrestrial by IAU 2006/2000A precession-nutation; polar motion (0.3 arc seconds) is left
+  // out.
+  double terrestrialFromCelestial[3][3];
+  eraC2t06a(tt.day, tt.fraction, ut1.day, ut1.fraction, 0.0, 0.0, terrestrialFromCelestial);
+  double site[3];
+  eraGd2gc(ERFA_WGS84, radians(observer.longitudeDeg), radians(observer.latitudeDeg), observer.altitudeM,
+           site);
+
+  const double sinLat = std::sin(radians(observer.latitudeDeg)),
+               cosLat = std::cos(radians(observer.latitudeDeg));
+  const double sinLon = std::sin(radians(observer.longitudeDeg)),
+               cosLon = std::cos(radians(observer.longitudeDeg));
+  auto enuFromCelestial = [&](const glm::dvec3& gcrsM) {
+    const double in[3] = {gcrsM.x, gcrsM.y, gcrsM.z};
+    double p[3];
+    eraRxp(terrestrialFromCelestial, const_cast<double*>(in), p);
+    for (int i = 0; i < 3; ++i) p[i] -= site[i];
+    return glm::dvec3(-sinLon * p[0] + cosLon * p[1],
+                      -sinLat * cosLon * p[0] - sinLat * sinLon * p[1] + cosLat * p[2],
+                      cosLat * cosLon * p[0] + cosLat * sinLon * p[1] + sinLat * p[2]);
+  };
+  const glm::dvec3 sunM = enuFromCelestial(sunGcrsM), moonM = enuFromCelestial(moonGcrsM);
+
+  Ephemeris e;
+  e.sun = bodyAt(sunM, kSunRadiusM);
+  e.moon = bodyAt(moonM, kMoonRadiusM);
+  const double cosPhase = glm::dot(glm::normalize(-moonM), glm::normalize(sunM - moonM));
+  e.moonPhaseAngleRad = std::acos(std::clamp(cosPhase, -1.0, 1.0));
+  e.moonIlluminatedFraction = 0.5 * (1.0 + cosPhase);
+  const double sunAu = e.sun.distanceM / ERFA_DAU, moonRatio = kMoonMeanDistanceM / e.moon.distanceM;
+  e.sunIlluminanceLux = kSunIlluminanceLux / (sunAu * sunAu);
+  e.moonIlluminanceLux = kFullMoonIlluminanceLux * moonRatio * moonRatio / (sunAu * sunAu) *
+                         std::pow(10.0, -0.4 * moonPhaseMagnitudes(e.moonPhaseAngleRad));
+  return e;
+}
+
+}  // namespace welkin::sky

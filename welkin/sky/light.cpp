@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/sky/light.h"
+
+namespace welkin::sky {
+namespace {
+
+// The triple scaled to photometric weight 1.
+glm::vec3 unitLuminance(glm::vec3 c) {
+  return c / (0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z);
+}
+
+}  // namespace
+
+glm::vec3 sunlightColour() {
+  return unitLuminance({1.05f, 0.99f, 0.95f});
+}
+
+glm::vec3 moonlightColour() {
+  return unitLuminance(sunlightColour() * glm::vec3(1.10f, 1.0f, 0.85f));
+}
+
+Light sunLight(const Ephemeris& e) {
+  return {glm::vec3(e.sun.direction), static_cast<float>(e.sunIlluminanceLux) * sunlightColour()};
+}
+
+Light moonLight(const Ephemeris& e) {
+  return {glm::vec3(e.moon.direction), static_cast<float>(e.moonIlluminanceLux) * moonlightColour()};
+}
+
+}  // namespace welkin::sky
