@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clear sky in absolute luminance: Rayleigh, aerosol and ozone after S. Hillaire 2020, "A Scalable and Production Ready Sky and
-// Atmosphere Rendering Technique". The formulas stand once, in shaders/lib/atmosphere.glsl, for CPU and GPU.
+// The clear sky in absolute luminance: Rayleigh, aerosol and ozone after S. Hillaire 2020, "A Scalable and
+// Production Ready Sky and Atmosphere Rendering Technique". The formulas stand once, in
+// shaders/lib/atmosphere.glsl, for CPU and GPU.
 //
-// Frame: east-north-up at the place, z up. Altitudes in metres above mean sea level; the ground is a sphere at groundAltitudeM.
-// Luminance in cd/m2 and illuminance in lux, each as linear Rec. 709 triples whose weighted sum (0.2126, 0.7152, 0.0722) is the
-// photometric value.
+// Frame: east-north-up at the place, z up. Altitudes in metres above mean sea level; the ground is a sphere
+// at groundAltitudeM. Luminance in cd/m2 and illuminance in lux, each as linear Rec. 709 triples whose
+// weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -16,37 +18,92 @@
 
 namespace welkin::sky {
 
+// The fields of `struct Atmosphere` in shaders/lib/atmosphere.glsl, with the same names and meanings.
+struct AtmosphereUniforms {
+  float seaRadiusM = 0.0f;
+  float groundAltitudeM = 0.0f;
+  float topAltitudeM = 0.0f;
+  glm::vec3 rayleighScattering{0};
+  float rayleighScaleHeightM = 0.0f;
+  glm::vec3 aerosolExtinction{0};
+  glm::vec3 aerosolScattering{0};
+  float aerosolScaleHeightM = 0.0f;
+  float aerosolG = 0.0f;
+  glm::vec3 ozoneAbsorption{0};
+  float ozoneAltitudeM = 0.0f;
+  float ozoneHalfWidthM = 0.0f;
+  glm::vec3 groundAlbedo{0};
+  glm::vec3 airglow{0};
+  float airglowAltitudeM = 0.0f;
+};
+
+// Calls f(name, value) for each field: how a GPU's uniforms are filled by name.
+template <class F>
+void visitFields(const AtmosphereUniforms& u, F&& f) {
+  f("seaRadiusM", u.seaRadiusM);
+  f("groundAltitudeM", u.groundAltitudeM);
+  f("topAltitudeM", u.topAltitudeM);
+  f("rayleighScattering", u.rayleighScattering);
+  f("rayleighScaleHeightM", u.rayleighScaleHeightM);
+  f("aerosolExtinction", u.aerosolExtinction);
+  f("aerosolScattering", u.aerosolScattering);
+  f("aerosolScaleHeightM", u.aerosolScaleHeightM);
+  f("aerosolG", u.aerosolG);
+  f("ozoneAbsorption", u.ozoneAbsorption);
+  f("ozoneAltitudeM", u.ozoneAltitudeM);
+  f("ozoneHalfWidthM", u.ozoneHalfWidthM);
+  f("groundAlbedo", u.groundAlbedo);
+  f("airglow", u.airglow);
+  f("airglowAltitudeM", u.airglowAltitudeM);
+}
+
+// The coefficients for a visibility (m, meteorological optical range at the ground). Pure.
+AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double visibilityM,
+                                      double groundAltitudeM, glm::vec3 groundAlbedo);
+
 // The atmosphere and the two tables that depend on nothing else. Immutable; safe to share between threads.
+// The tables are computed in the constructor by parallelFor, the same with any number of threads.
 class Atmosphere {
  public:
-  // visibilityM: meteorological optical range at the ground, Koschmieder: total extinction there is 3.912 / visibility.
-  Atmosphere(const AtmosphereParams& params, double visibilityM, double groundAltitudeM, glm::vec3 groundAlbedo);
+  // visibilityM: meteorological optical range at the ground, Koschmieder: total extinction there is 3.912 /
+  // visibility.
+  Atmosphere(const AtmosphereParams& params, double visibilityM, double groundAltitudeM,
+             glm::vec3 groundAlbedo);
+  // For media that no visibility describes (other planets, tests).
+  explicit Atmosphere(const AtmosphereUniforms& uniforms);
 
-  const Image<float>& transmittance() const { return transmittance_; }             // 256 x 64 RGB
-  const Image<float>& multipleScattering() const { return multipleScattering_; }   // 32 x 32 RGB
+  const AtmosphereUniforms& uniforms() const { return uniforms_; }
+  const Image<float>& transmittance() const { return transmittance_; }            // 256 x 64 RGB
+  const Image<float>& multipleScattering() const { return multipleScattering_; }  // 32 x 32 RGB
 
-  double groundAltitudeM() const { return groundAltitudeM_; }
-  double topAltitudeM() const;
-  float aerosolGroundExtinction() const;   // 1/m
+  double groundAltitudeM() const { return uniforms_.groundAltitudeM; }
+  double topAltitudeM() const { return uniforms_.topAltitudeM; }
+  float aerosolGroundExtinction() const { return uniforms_.aerosolExtinction.y; }  // 1/m, green
 
-  // Transmittance from a point to space in the direction with zenith cosine mu; 0 where the earth is in the way.
+  // Transmittance from a point to space in the direction with zenith cosine mu; 0 where the earth is in the
+  // way (half a light's disc at the horizon itself).
   glm::vec3 transmittanceToSpace(double altitudeM, double mu) const;
-  // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs).
+  // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs). Towards the
+  // ground: of the air in front of it alone.
   glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, const std::vector<Light>& lights) const;
   // Illuminance of a horizontal plane facing up by the clear sky alone.
   glm::vec3 skyIlluminance(double altitudeM, const std::vector<Light>& lights) const;
 
  private:
+  AtmosphereUniforms uniforms_;
   Image<float> transmittance_, multipleScattering_;
-  double groundAltitudeM_;
 };
 
-// Tables seen from one eye for one set of lights (sun, moon), everything summed, airglow included, discs left out.
-// Their parametrisation is in shaders/lib/atmosphere.glsl: azimuth relative to lights[0], denser near it and near the horizon.
+// Tables seen from one eye for one set of lights (sun, moon), everything summed, airglow included, discs left
+// out. Their parametrisation is in shaders/lib/atmosphere.glsl: azimuth relative to lights[0], denser near it
+// and near the horizon. Sample with linear filtering and clamping, through atmosphereSkyLuminance() and
+// atmosphereAerial().
 struct SkyTables {
-  Image<float> skyView;              // RGB luminance of the clear sky by direction (down to the ground, which is drawn by the caller)
-  Volume<float> aerialInscatter;     // RGB luminance scattered in between the eye and a distance (azimuth, elevation, distance)
-  Volume<float> aerialTransmittance; // RGB
+  Image<float> skyView;  // RGB luminance of the clear sky by direction (down to the ground, which is drawn by
+                         // the caller)
+  Volume<float> aerialInscatter;      // RGB luminance scattered in between the eye and a distance (azimuth,
+                                      // elevation, distance)
+  Volume<float> aerialTransmittance;  // RGB
 };
 SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM, const std::vector<Light>& lights);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where sun and moon stand. Geometric directions without refraction, topocentric (the moon's parallax matters: up to 1 degree).
+// Where sun and moon stand. Geometric directions without refraction, topocentric (the moon's parallax
+// matters: up to 1 degree).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,15 +10,15 @@
 namespace welkin::sky {
 
 struct Observer {
-  double latitudeDeg = 0.0;    // geodetic, north positive
-  double longitudeDeg = 0.0;   // east positive
+  double latitudeDeg = 0.0;   // geodetic, north positive
+  double longitudeDeg = 0.0;  // east positive
   double altitudeM = 0.0;
 };
 
 struct Body {
-  double azimuthDeg = 0.0;     // clockwise from north, [0, 360)
-  double elevationDeg = 0.0;   // above the horizon
-  double distanceM = 0.0;      // from the observer
+  double azimuthDeg = 0.0;    // clockwise from north, [0, 360)
+  double elevationDeg = 0.0;  // above the horizon
+  double distanceM = 0.0;     // from the observer
   double angularRadiusRad = 0.0;
   glm::dvec3 direction{0, 0, 1};  // unit, east-north-up
 };

@@ -12,11 +12,11 @@ glm::vec3 unitLuminance(glm::vec3 c) {
 }  // namespace
 
 glm::vec3 sunlightColour() {
-  return unitLuminance({1.05f, 0.99f, 0.95f});
+  return unitLuminance({1.0894f, 0.9776f, 0.9582f});
 }
 
 glm::vec3 moonlightColour() {
-  return unitLuminance(sunlightColour() * glm::vec3(1.10f, 1.0f, 0.85f));
+  return unitLuminance(sunlightColour() * glm::vec3(1.157f, 0.990f, 0.799f));
 }
 
 Light sunLight(const Ephemeris& e) {

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clear sky: medium, table parametrisations, and the ray-march integrals that fill the tables.
+// After S. Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique" (tables, multiple scattering) and
+// E. Bruneton and F. Neyret 2008, "Precomputed Atmospheric Scattering" (transmittance parametrisation).
+//
+// Needs phase.glsl before it. Shared by C++ and GLSL, see welkin/core/glsl.h.
+// Frame: at the eye, z up, x and y horizontal. h: altitude above mean sea level in metres; mu: cosine of the angle from the
+// zenith; t: metres along a ray. Altitudes along rays are computed as differences, so that 32 bits hold them to millimetres although
+// the earth's radius does not fit. Light in linear Rec. 709 (cd/m2, lux), extinction in 1/m. All tables want linear filtering and
+// clamping at the edges.
+
+// How a table's coordinate in [0, 1] meets texel centres: ends fall on the first and last centre. Sizes are in welkin/sky/atmosphere.h's
+// tables; these constants must agree with them.
+WELKIN_CONST float kTransmittanceWidth = 256.0f;   // by direction
+WELKIN_CONST float kTransmittanceHeight = 64.0f;   // by altitude
+WELKIN_CONST float kMultipleScatteringSize = 32.0f;
+WELKIN_CONST float kSkyViewWidth = 192.0f;         // by azimuth
+WELKIN_CONST float kSkyViewHeight = 128.0f;        // by elevation, lower half under the horizon
+WELKIN_CONST float kAerialAzimuths = 48.0f;
+WELKIN_CONST float kAerialElevations = 32.0f;
+WELKIN_CONST float kAerialDistances = 32.0f;
+WELKIN_CONST float kAerialNearM = 500.0f;          // distances are spaced evenly up to about here, then by ratio
+WELKIN_CONST float kAerialFarM = 500000.0f;
+
+WELKIN_CONST float kAtmospherePi = 3.14159265f;
+WELKIN_CONST float kLightRadiusRad = 0.00465f;     // of the discs of sun and moon
+
+struct Atmosphere {
+  float seaRadiusM;            // radius of the sphere at altitude 0
+  float groundAltitudeM;
+  float topAltitudeM;
+  vec3 rayleighScattering;     // 1/m at altitude 0
+  float rayleighScaleHeightM;
+  vec3 aerosolExtinction;      // 1/m at the ground
+  vec3 aerosolScattering;      // 1/m at the ground
+  float aerosolScaleHeightM;
+  float aerosolG;              // mean cosine of the Henyey-Greenstein phase function
+  vec3 ozoneAbsorption;        // 1/m at the layer's peak
+  float ozoneAltitudeM;        // of the peak; the profile is a tent
+  float ozoneHalfWidthM;
+  vec3 groundAlbedo;
+  vec3 airglow;                // zenith luminance outside the lower atmosphere, cd/m2
+  float airglowAltitudeM;
+};
+
+// ---- Geometry -------------------------------------------------------------------------------------------------------------------
+
+// (radius at h0)^2 - (radius at h1)^2 without cancellation.
+WELKIN_FN float atmosphereSquareDifference(Atmosphere a, float h0, float h1) {
+  return (h0 - h1) * (2.0f * a.seaRadiusM + h0 + h1);
+}
+
+// Altitude at t along a ray from h.
+WELKIN_FN float atmosphereAltitudeAlong(Atmosphere a, float h, float mu, float t) {
+  float r = a.seaRadiusM + h;
+  float k = t * (2.0f * r * mu + t);
+  return h + k / (sqrt(max(r * r + k, 0.0f)) + r);
+}
+
+// Cosine of the zenith angle of the horizon, 0 or less.
+WELKIN_FN float atmosphereHorizonMu(Atmosphere a, float h) {
+  return -sqrt(max(atmosphereSquareDifference(a, h, a.groundAltitudeM), 0.0f)) / (a.seaRadiusM + h);
+}
+
+// Distance to where a ray from h, at or under altitude top, leaves the sphere of that altitude.
+WELKIN_FN float atmosphereDistanceToSphere(Atmosphere a, float h, float mu, float top) {
+  float b = (a.seaRadiusM + h) * mu;
+  float c = min(atmosphereSquareDifference(a, h, top), 0.0f);
+  float s = sqrt(b * b - c);
+  return b > 0.0f ? -c / (b + s) : s - b;
+}
+
+// Distance to the ground, or -1 where the ray misses it.
+WELKIN_FN float atmosphereDistanceToGround(Atmosphere a, float h, float mu) {
+  float b = (a.seaRadiusM + h) * mu;
+  float c = max(atmosphereSquareDifference(a, h, a.groundAltitudeM), 0.0f);
+  float disc = b * b - c;
+  if (mu >= 0.0f || disc < 0.0f) return -1.0f;
+  return c / (sqrt(disc) - b);
+}
+
+// ---- Medium ---------------------------------------------------------------------------------------------------------------------
+
+struct AtmosphereMedium {
+  vec3 rayleigh;    // scattering, 1/m
+  vec3 aerosol;     // scattering, 1/m
+  vec3 extinction;  // 1/m
+};
+
+WELKIN_FN float atmosphereOzone(Atmosphere a, float h) {
+  return max(1.0f - abs(h - a.ozoneAltitudeM) / a.ozoneHalfWidthM, 0.0f);
+}
+
+WELKIN_FN AtmosphereMedium atmosphereMedium(Atmosphere a, float h) {
+  float aerosol = exp(-max(h - a.groundAltitudeM, 0.0f) / a.aerosolScaleHeightM);
+  AtmosphereMedium m;
+  m.rayleigh = a.rayleighScattering * exp(-h / a.rayleighScaleHeightM);
+  m.aerosol = a.aerosolScattering * aerosol;
+  m.extinction = m.rayleigh + a.aerosolExtinction * aerosol + a.ozoneAbsorption * atmosphereOzone(a, h);
+  return m;
+}
+
+// Integral of exp(-h / scale) over a step of dt along which h goes from h0 to h1 evenly.
+WELKIN_FN float atmosphereExponentialStep(float h0, float h1, float scale, float dt) {
+  float x = (h1 - h0) / scale;
+  float mean = abs(x) < 0.01f ? 1.0f - 0.5f * x : (1.0f - exp(-x)) / x;
+  return dt * exp(-h0 / scale) * mean;
+}
+
+// Optical depth from h to space along mu. The ray must miss the ground.
+WELKIN_FN vec3 atmosphereOpticalDepth(Atmosphere a, float h, float mu) {
+  const int kSteps = 24;
+  float tEnd = atmosphereDistanceToSphere(a, h, mu, a.topAltitudeM);
+  float tLow = clamp(-(a.seaRadiusM + h) * mu, 0.0f, tEnd);  // the lowest point; steps are short around it
+  float rayleigh = 0.0f;
+  float aerosol = 0.0f;
+  float ozone = 0.0f;
+  for (int side = 0; side < 2; ++side) {
+    float reach = side == 0 ? tEnd - tLow : -tLow;
+    if (reach == 0.0f) continue;
+    float t0 = tLow;
+    float h0 = atmosphereAltitudeAlong(a, h, mu, t0);
+    for (int i = 1; i <= kSteps; ++i) {
+      float x = float(i) / float(kSteps);
+      float t1 = tLow + reach * x * x;
+      float h1 = atmosphereAltitudeAlong(a, h, mu, t1);
+      float dt = abs(t1 - t0);
+      rayleigh += atmosphereExponentialStep(h0, h1, a.rayleighScaleHeightM, dt);
+      aerosol += atmosphereExponentialStep(h0 - a.groundAltitudeM, h1 - a.groundAltitudeM, a.aerosolScaleHeightM, dt);
+      ozone += dt * 0.25f * (atmosphereOzone(a, h0) + 2.0f * atmosphereOzone(a, 0.5f * (h0 + h1)) + atmosphereOzone(a, h1));
+      t0 = t1;
+      h0 = h1;
+    }
+  }
+  return a.rayleighScattering * rayleigh + a.aerosolExtinction * aerosol + a.ozoneAbsorption * ozone;
+}
+
+// ---- Transmittance table: x by direction from the zenith to the horizon, y by altitude ----------------------------------------
+
+WELKIN_FN vec2 atmosphereTransmittanceUv(Atmosphere a, float h, float mu) {
+  float full = sqrt(atmosphereSquareDifference(a, a.topAltitudeM, a.groundAltitudeM));
+  float rho = sqrt(max(atmosphereSquareDifference(a, h, a.groundAltitudeM), 0.0f));
+  float d = atmosphereDistanceToSphere(a, h, mu, a.topAltitudeM);
+  float dMin = a.topAltitudeM - h;
+  float x = clamp((d - dMin) / max(rho + full - dMin, 1.0f), 0.0f, 1.0f);
+  float y = clamp(rho / full, 0.0f, 1.0f);
+  return vec2((0.5f + x * (kTransmittanceWidth - 1.0f)) / kTransmittanceWidth,
+              (0.5f + y * (kTransmittanceHeight - 1.0f)) / kTransmittanceHeight);
+}
+
+// The inverse: altitude and mu at x, y in [0, 1].
+WELKIN_FN vec2 atmosphereTransmittanceParameters(Atmosphere a, float x, float y) {
+  float full = sqrt(atmosphereSquareDifference(a, a.topAltitudeM, a.groundAltitudeM));
+  float rho = full * y;
+  float rg = a.seaRadiusM + a.groundAltitudeM;
+  float h = a.groundAltitudeM + rho * rho / (sqrt(rho * rho + rg * rg) + rg);
+  float dMin = a.topAltitudeM - h;
+  float d = dMin + x * (rho + full - dMin);
+  float r = a.seaRadiusM + h;
+  float mu = d <= 0.0f ? 1.0f : clamp((full * full - rho * rho - d * d) / (2.0f * r * d), -1.0f, 1.0f);
+  return vec2(h, mu);
+}
+
+// Transmittance from h to space towards a light at mu; fades to 0 while the light's disc sinks behind the earth.
+WELKIN_FN vec3 atmosphereTransmittance(Atmosphere a, sampler2D transmittanceLut, float altitudeM, float mu) {
+  float h = clamp(altitudeM, a.groundAltitudeM, a.topAltitudeM);
+  float horizon = atmosphereHorizonMu(a, h);
+  float width = kLightRadiusRad * sqrt(max(1.0f - horizon * horizon, 0.0f));
+  float seen = smoothstep(-width, width, mu - horizon);
+  if (seen <= 0.0f) return vec3(0.0f);
+  return vec3(textureLod(transmittanceLut, atmosphereTransmittanceUv(a, h, max(mu, horizon)), 0.0f)) * seen;
+}
+
+// ---- Multiple-scattering table: x by the light's mu, y by altitude ------------------------------------------------------------
+
+// Denser where the light is near the horizon and where the air is dense.
+WELKIN_FN vec2 atmosphereMultipleScatteringUv(Atmosphere a, float h, float muLight) {
+  float x = 0.5f + 0.5f * sign(muLight) * sqrt(abs(muLight));
+  float y = sqrt(clamp((h - a.groundAltitudeM) / (a.topAltitudeM - a.groundAltitudeM), 0.0f, 1.0f));
+  return vec2((0.5f + x * (kMultipleScatteringSize - 1.0f)) / kMultipleScatteringSize,
+              (0.5f + y * (kMultipleScatteringSize - 1.0f)) / kMultipleScatteringSize);
+}
+
+WELKIN_FN vec2 atmosphereMultipleScatteringParameters(Atmosphere a, float x, float y) {
+  float s = 2.0f * x - 1.0f;
+  return vec2(a.groundAltitudeM + y * y * (a.topAltitudeM - a.groundAltitudeM), s * abs(s));
+}
+
+// Light that reaches a point at h after one scattering along `dir`, per unit of illuminance (first), and the fraction of isotropic
+// light of luminance 1 at each point that does (second): Hillaire's L_2nd and f_ms before the mean over directions.
+// lightDir in the frame of the point. The ground reflects diffusely.
+WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, float h, vec3 dir, vec3 lightDir,
+                                     WELKIN_OUT(vec3) single, WELKIN_OUT(vec3) gathered) {
+  const int kSteps = 20;
+  float r = a.seaRadiusM + h;
+  float tGround = atmosphereDistanceToGround(a, h, dir.z);
+  float tEnd = tGround >= 0.0f ? tGround : atmosphereDistanceToSphere(a, h, dir.z, a.topAltitudeM);
+  float c = dot(dir, lightDir);
+  float rayleighPhase = phaseRayleigh(c);
+  float aerosolPhase = phaseHenyeyGreenstein(c, a.aerosolG);
+  vec3 through = vec3(1.0f);
+  single = vec3(0.0f);
+  gathered = vec3(0.0f);
+  float t0 = 0.0f;
+  for (int i = 1; i <= kSteps; ++i) {
+    float x = float(i) / float(kSteps);
+    float t1 = tEnd * x * x;
+    float t = 0.5f * (t0 + t1);
+    float ht = atmosphereAltitudeAlong(a, h, dir.z, t);
+    float muLight = (r * lightDir.z + t * c) / (a.seaRadiusM + ht);
+    AtmosphereMedium m = atmosphereMedium(a, ht);
+    vec3 stepThrough = exp(-m.extinction * (t1 - t0));
+    vec3 weight = through * (vec3(1.0f) - stepThrough) / max(m.extinction, vec3(1e-20f));
+    single += weight * atmosphereTransmittance(a, transmittanceLut, ht, muLight) *
+              (m.rayleigh * rayleighPhase + m.aerosol * aerosolPhase);
+    gathered += weight * (m.rayleigh + m.aerosol);
+    through *= stepThrough;
+    t0 = t1;
+  }
+  if (tGround >= 0.0f) {
+    float muLight = (r * lightDir.z + tGround * c) / (a.seaRadiusM + a.groundAltitudeM);
+    single += through * a.groundAlbedo * (max(muLight, 0.0f) / kAtmospherePi) *
+              atmosphereTransmittance(a, transmittanceLut, a.groundAltitudeM, muLight);
+  }
+}
+
+// ---- In-scattering along a ray -----------------------------------------------------------------------------------------------
+
+// Two lights; the second may have no illuminance. Directions in the frame of the eye.
+struct AtmosphereLights {
+  vec3 direction0;
+  vec3 illuminance0;  // lux at the top of the atmosphere
+  vec3 direction1;
+  vec3 illuminance1;
+};
+
+// What a point at h sends towards the eye from one light, for the phase values of the ray.
+WELKIN_FN vec3 atmosphereSource(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, AtmosphereMedium m, float h,
+                                float muLight, float rayleighPhase, float aerosolPhase) {
+  vec3 direct = atmosphereTransmittance(a, transmittanceLut, h, muLight);
+  vec3 multiple = vec3(textureLod(multipleScatteringLut, atmosphereMultipleScatteringUv(a, h, muLight), 0.0f));
+  return direct * (m.rayleigh * rayleighPhase + m.aerosol * aerosolPhase) + multiple * (m.rayleigh + m.aerosol);
+}
+
+// Carries the march over [t0, t1]: adds to inscatter, multiplies transmittance. Under the ground the air is taken as at the ground, so that
+// tables stay smooth across the horizon.
+WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, float eyeAltitudeM, vec3 dir,
+                               AtmosphereLights lights, float t0, float t1, WELKIN_INOUT(vec3) inscatter,
+                               WELKIN_INOUT(vec3) transmittance) {
+  float r = a.seaRadiusM + eyeAltitudeM;
+  float t = 0.5f * (t0 + t1);
+  float along = atmosphereAltitudeAlong(a, eyeAltitudeM, dir.z, t);
+  float h = max(along, a.groundAltitudeM);
+  AtmosphereMedium m = atmosphereMedium(a, h);
+  vec3 source = vec3(0.0f);
+  if (lights.illuminance0.y > 0.0f) {
+    float c = dot(dir, lights.direction0);
+    float muLight = (r * lights.direction0.z + t * c) / (a.seaRadiusM + along);
+    source += lights.illuminance0 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
+                                                     phaseHenyeyGreenstein(c, a.aerosolG));
+  }
+  if (lights.illuminance1.y > 0.0f) {
+    float c = dot(dir, lights.direction1);
+    float muLight = (r * lights.direction1.z + t * c) / (a.seaRadiusM + along);
+    source += lights.illuminance1 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
+                                                     phaseHenyeyGreenstein(c, a.aerosolG));
+  }
+  vec3 stepThrough = exp(-m.extinction * (t1 - t0));
+  inscatter += transmittance * source * (vec3(1.0f) - stepThrough) / max(m.extinction, vec3(1e-20f));
+  transmittance *= stepThrough;
+}
+
+// Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
+// the total amount of starlight". Seen through the air beneath.
+WELKIN_FN vec3 atmosphereAirglow(Atmosphere a, sampler2D transmittanceLut, float h, float mu) {
+  if (h >= a.airglowAltitudeM) return vec3(0.0f);
+  float q = (a.seaRadiusM + h) / (a.seaRadiusM + a.airglowAltitudeM);
+  float vanRhijn = 1.0f / sqrt(max(1.0f - q * q * (1.0f - mu * mu), 1e-4f));
+  return a.airglow * vanRhijn * atmosphereTransmittance(a, transmittanceLut, h, mu);
+}
+
+// Luminance of the clear sky along dir; down to the ground where the ray meets it, without the ground's own. No discs.
+// quality scales the number of steps: 1 is enough for pictures.
+WELKIN_FN vec3 atmosphereSkyRay(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, float eyeAltitudeM, vec3 dir,
+                                AtmosphereLights lights, float quality) {
+  float h = max(eyeAltitudeM, a.groundAltitudeM);
+  float b = (a.seaRadiusM + h) * dir.z;
+  float tStart = 0.0f;
+  float aboveTop = atmosphereSquareDifference(a, h, a.topAltitudeM);
+  if (aboveTop > 0.0f) {  // from outside: begin where the ray enters the air
+    float disc = b * b - aboveTop;
+    if (b >= 0.0f || disc <= 0.0f) return vec3(0.0f);
+    tStart = aboveTop / (sqrt(disc) - b);
+  }
+  float tGround = atmosphereDistanceToGround(a, h, dir.z);
+  float tEnd = tGround >= 0.0f ? tGround : sqrt(max(b * b - aboveTop, 0.0f)) - b;
+  float tLow = clamp(-b, tStart, tEnd);  // the lowest point: steps are short around it and around the eye
+  vec3 inscatter = vec3(0.0f);
+  vec3 through = vec3(1.0f);
+  if (tLow > tStart) {
+    int n = int(14.0f * quality);
+    float t0 = tStart;
+    for (int i = 1; i <= n; ++i) {
+      float x = float(i) / float(n);
+      float t1 = tStart + (tLow - tStart) * x * x * (3.0f - 2.0f * x);
+      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, inscatter, through);
+      t0 = t1;
+    }
+  }
+  if (tEnd > tLow) {
+    int n = int(26.0f * quality);
+    float t0 = tLow;
+    for (int i = 1; i <= n; ++i) {
+      float x = float(i) / float(n);
+      float t1 = tLow + (tEnd - tLow) * x * x * x;
+      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, inscatter, through);
+      t0 = t1;
+    }
+  }
+  if (tGround < 0.0f) inscatter += atmosphereAirglow(a, transmittanceLut, h, dir.z);
+  return inscatter;
+}
+
+// ---- Directions in the sky-view and aerial tables -----------------------------------------------------------------------------
+
+// Azimuth from the first light, in [-pi, pi], counter-clockwise seen from above.
+WELKIN_FN float atmosphereAzimuth(vec3 dir, vec3 lightDir0) {
+  vec2 l = vec2(lightDir0.x, lightDir0.y);
+  if (dot(l, l) < 1e-12f) l = vec2(1.0f, 0.0f);
+  float y = l.x * dir.y - l.y * dir.x;
+  float x = l.x * dir.x + l.y * dir.y;
+  if (abs(x) + abs(y) < 1e-12f) return 0.0f;
+  return atan(y, x);
+}
+
+// Table coordinate in [0, 1] of an azimuth: a few times denser at the light than opposite.
+WELKIN_FN float atmosphereAzimuthToX(float azimuth) {
+  float f = min(abs(azimuth) / kAtmospherePi, 1.0f);
+  float s = (sqrt(0.09f + 2.8f * f) - 0.3f) / 1.4f;
+  return 0.5f + (azimuth < 0.0f ? -0.5f : 0.5f) * s;
+}
+
+WELKIN_FN float atmosphereXToAzimuth(float x) {
+  float s = 2.0f * x - 1.0f;
+  return kAtmospherePi * s * (0.3f + 0.7f * abs(s));
+}
+
+// Table coordinate in [-1, 1] of a direction's elevation: 0 at the horizon of the eye, 1 at the zenith, -1 at the nadir, densest at the
+// horizon.
+WELKIN_FN float atmosphereMuToY(float mu, float horizonMu) {
+  float angle = asin(clamp(mu, -1.0f, 1.0f)) - asin(horizonMu);
+  float range = angle >= 0.0f ? 0.5f * kAtmospherePi - asin(horizonMu) : 0.5f * kAtmospherePi + asin(horizonMu);
+  float s = sqrt(min(abs(angle) / range, 1.0f));
+  return angle < 0.0f ? -s : s;
+}
+
+WELKIN_FN float atmosphereYToMu(float y, float horizonMu) {
+  float range = y >= 0.0f ? 0.5f * kAtmospherePi - asin(horizonMu) : 0.5f * kAtmospherePi + asin(horizonMu);
+  return sin(clamp(asin(horizonMu) + y * abs(y) * range, -0.5f * kAtmospherePi, 0.5f * kAtmospherePi));
+}
+
+// Direction with zenith cosine mu at an azimuth from the first light.
+WELKIN_FN vec3 atmosphereDirection(float mu, float azimuth, vec3 lightDir0) {
+  vec2 l = vec2(lightDir0.x, lightDir0.y);
+  float n = sqrt(dot(l, l));
+  if (n < 1e-6f) {
+    l = vec2(1.0f, 0.0f);
+  } else {
+    l = l / n;
+  }
+  float s = sqrt(max(1.0f - mu * mu, 0.0f));
+  float ca = cos(azimuth);
+  float sa = sin(azimuth);
+  return vec3(s * (l.x * ca - l.y * sa), s * (l.y * ca + l.x * sa), mu);
+}
+
+// ---- Sky-view table: x by azimuth, y by elevation. The halves above and below the horizon do not mix -----------------------------
+
+WELKIN_FN vec3 atmosphereSkyLuminance(Atmosphere a, sampler2D skyViewLut, float eyeAltitudeM, vec3 dir, vec3 lightDir0) {
+  float x = atmosphereAzimuthToX(atmosphereAzimuth(dir, lightDir0));
+  float y = atmosphereMuToY(dir.z, atmosphereHorizonMu(a, max(eyeAltitudeM, a.groundAltitudeM)));
+  float rows = 0.5f * kSkyViewHeight;
+  float row = y >= 0.0f ? rows + 0.5f + y * (rows - 1.0f) : rows - 0.5f + y * (rows - 1.0f);
+  return vec3(textureLod(skyViewLut, vec2((0.5f + x * (kSkyViewWidth - 1.0f)) / kSkyViewWidth, row / kSkyViewHeight), 0.0f));
+}
+
+// Azimuth and mu of the texel in column i and row j.
+WELKIN_FN vec2 atmosphereSkyViewParameters(float i, float j, float horizonMu) {
+  float rows = 0.5f * kSkyViewHeight;
+  float y = j >= rows ? (j - rows) / (rows - 1.0f) : (j - rows + 1.0f) / (rows - 1.0f);
+  float mu = atmosphereYToMu(y, horizonMu);
+  // The two rows at the horizon itself must fall on their sides of it.
+  if (j == rows) mu = horizonMu + 1e-5f;
+  if (j == rows - 1.0f) mu = horizonMu - 1e-5f;
+  return vec2(atmosphereXToAzimuth(i / (kSkyViewWidth - 1.0f)), mu);
+}
+
+// ---- Aerial perspective table: x by azimuth, y by elevation, z by distance -----------------------------------------------------
+
+WELKIN_FN float atmosphereDistanceToZ(float distanceM) {
+  return min(log(1.0f + max(distanceM, 0.0f) / kAerialNearM) / log(1.0f + kAerialFarM / kAerialNearM), 1.0f);
+}
+
+WELKIN_FN float atmosphereZToDistance(float z) {
+  return kAerialNearM * (exp(z * log(1.0f + kAerialFarM / kAerialNearM)) - 1.0f);
+}
+
+// Light scattered in between the eye and a distance, and the transmittance over it. The light is that of a cloudless sky.
+WELKIN_FN void atmosphereAerial(Atmosphere a, sampler3D inscatterLut, sampler3D transmittanceLut, float eyeAltitudeM, vec3 dir,
+                                vec3 lightDir0, float distanceM, WELKIN_OUT(vec3) inscatter, WELKIN_OUT(vec3) transmittance) {
+  float x = atmosphereAzimuthToX(atmosphereAzimuth(dir, lightDir0));
+  float y = 0.5f + 0.5f * atmosphereMuToY(dir.z, atmosphereHorizonMu(a, max(eyeAltitudeM, a.groundAltitudeM)));
+  vec3 uvw = vec3((0.5f + x * (kAerialAzimuths - 1.0f)) / kAerialAzimuths,
+                  (0.5f + y * (kAerialElevations - 1.0f)) / kAerialElevations,
+                  (0.5f + atmosphereDistanceToZ(distanceM) * (kAerialDistances - 1.0f)) / kAerialDistances);
+  inscatter = vec3(textureLod(inscatterLut, uvw, 0.0f));
+  transmittance = vec3(textureLod(transmittanceLut, uvw, 0.0f));
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/sky/atmosphere.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/parallel.h"
+#include "welkin/core/units.h"
+#include "welkin/sky/atmosphere_glsl.h"
+
+namespace welkin::sky {
+namespace {
+
+using shared::vec2;
+using shared::vec3;
+
+void store(float* p, const vec3& v) {
+  p[0] = v.x;
+  p[1] = v.y;
+  p[2] = v.z;
+}
+
+Image<float> makeTransmittance(const shared::Atmosphere& a) {
+  const int w = static_cast<int>(shared::kTransmittanceWidth),
+            h = static_cast<int>(shared::kTransmittanceHeight);
+  Image<float> table(w, h, 3);
+  parallelFor(static_cast<std::size_t>(h), 4, [&](std::size_t begin, std::size_t end) {
+    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+      for (int i = 0; i < w; ++i) {
+        const vec2 p = shared::atmosphereTransmittanceParameters(
+            a, static_cast<float>(i) / (shared::kTransmittanceWidth - 1),
+            static_cast<float>(j) / (shared::kTransmittanceHeight - 1));
+        store(&table.at(i, j), glm::exp(-shared::atmosphereOpticalDepth(a, p.x, p.y)));
+      }
+    }
+  });
+  return table;
+}
+
+// Hillaire 2020, eq. 5 to 10: all orders from the second on as a geometric series of isotropic exchanges with
+// a neighbourhood that is lit like the point itself.
+Image<float> makeMultipleScattering(const shared::Atmosphere& a, const Image<float>& transmittance) {
+  const int size = static_cast<int>(shared::kMultipleScatteringSize);
+  constexpr int kElevations = 8, kAzimuths = 4;  // azimuths over half a turn: the light's plane is a mirror
+  const shared::sampler2D lut{&transmittance};
+  Image<float> table(size, size, 3);
+  parallelFor(static_cast<std::size_t>(size), 1, [&](std::size_t begin, std::size_t end) {
+    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+      for (int i = 0; i < size; ++i) {
+        const vec2 p = shared::atmosphereMultipleScatteringParameters(
+            a, static_cast<float>(i) / static_cast<float>(size - 1),
+            static_cast<float>(j) / static_cast<float>(size - 1));
+        const vec3 light(std::sqrt(std::max(1.0f - p.y * p.y, 0.0f)), 0.0f, p.y);
+        vec3 single(0.0f), gathered(0.0f);
+        for (int e = 0; e < kElevations; ++e) {
+          const float mu = -1.0f + (static_cast<float>(e) + 0.5f) * 2.0f / kElevations;
+          for (int f = 0; f < kAzimuths; ++f) {
+            const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(kPi) / kAzimuths;
+            vec3 s, g;
+            shared::atmosphereSecondOrder(
+                a, lut, p.x, shared::atmosphereDirection(mu, azimuth, vec3(1, 0, 0)), light, s, g);
+            single += s;
+            gathered += g;
+          }
+        }
+        constexpr float kWeight = 1.0f / (kElevations * kAzimuths);
+        store(&table.at(i, j), single * kWeight / (vec3(1.0f) - glm::min(gathered * kWeight, vec3(0.999f))));
+      }
+    }
+  });
+  return table;
+}
+
+}  // namespace
+
+Atmosphere::Atmosphere(const AtmosphereParams& params, double visibilityM, double groundAltitudeM,
+                       glm::vec3 groundAlbedo)
+    : Atmosphere(atmosphereUniforms(params, visibilityM, groundAltitudeM, groundAlbedo)) {}
+
+Atmosphere::Atmosphere(const AtmosphereUniforms& uniforms) : uniforms_(uniforms) {
+  const shared::Atmosphere a = shared::fromUniforms(uniforms_);
+  transmittance_ = makeTransmittance(a);
+  multipleScattering_ = makeMultipleScattering(a, transmittance_);
+}
+
+glm::vec3 Atmosphere::transmittanceToSpace(double altitudeM, double mu) const {
+  return shared::atmosphereTransmittance(shared::fromUniforms(uniforms_), {&transmittance_},
+                                         static_cast<float>(altitudeM), static_cast<float>(mu));
+}
+
+glm::vec3 Atmosphere::skyLuminance(double altitudeM, glm::vec3 direction,
+                                   const std::vector<Light>& lights) const {
+  shared::Atmosphere a = shared::fromUniforms(uniforms_);
+  vec3 sum(0.0f);
+  for (std::size_t i = 0; i == 0 || 2 * i < lights.size(); ++i) {
+    sum +=
+        shared::atmosphereSkyRay(a, {&transmittance_}, {&multipleScattering_}, static_cast<float>(altitudeM),
+                                 direction, shared::lightPair(lights, i), 1.0f);
+    a.airglow = vec3(0.0f);  // once
+  }
+  return sum;
+}
+
+glm::vec3 Atmosphere::skyIlluminance(double altitudeM, const std::vector<Light>& lights) const {
+  // Midpoints in elevation, squeezed towards the horizon where luminance changes fast, and in azimuth.
+  constexpr int kElevations = 24, kAzimuths = 24;
+  vec3 sum(0.0f);
+  for (int e = 0; e < kElevations; ++e) {
+    const float x = (static_cast<float>(e) + 0.5f) / kElevations;
+    const float angle = static_cast<float>(0.5 * kPi) * x * x;
+    const float width = static_cast<float>(kPi) * x / kElevations;
+    const float weight =
+        std::sin(angle) * std::cos(angle) * width * static_cast<float>(2.0 * kPi) / kAzimuths;
+    for (int f = 0; f < kAzimuths; ++f) {
+      const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(2.0 * kPi) / kAzimuths;
+      const vec3 zero = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
+      sum += weight *
+             skyLuminance(altitudeM, shared::atmosphereDirection(std::sin(angle), azimuth, zero), lights);
+    }
+  }
+  return sum;
+}
+
+}  // namespace welkin::sky

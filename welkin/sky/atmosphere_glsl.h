@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// shaders/lib/atmosphere.glsl compiled as C++, for this folder's sources and for tests.
+#pragma once
+
+#include "welkin/core/glsl.h"
+#include "welkin/sky/atmosphere.h"
+
+namespace welkin::sky::shared {
+
+using namespace welkin::glsl;
+#include "shaders/lib/phase.glsl"
+// Keeps the order: the second file uses the first.
+#include "shaders/lib/atmosphere.glsl"
+
+inline Atmosphere fromUniforms(const AtmosphereUniforms& u) {
+  Atmosphere a;
+  a.seaRadiusM = u.seaRadiusM;
+  a.groundAltitudeM = u.groundAltitudeM;
+  a.topAltitudeM = u.topAltitudeM;
+  a.rayleighScattering = u.rayleighScattering;
+  a.rayleighScaleHeightM = u.rayleighScaleHeightM;
+  a.aerosolExtinction = u.aerosolExtinction;
+  a.aerosolScattering = u.aerosolScattering;
+  a.aerosolScaleHeightM = u.aerosolScaleHeightM;
+  a.aerosolG = u.aerosolG;
+  a.ozoneAbsorption = u.ozoneAbsorption;
+  a.ozoneAltitudeM = u.ozoneAltitudeM;
+  a.ozoneHalfWidthM = u.ozoneHalfWidthM;
+  a.groundAlbedo = u.groundAlbedo;
+  a.airglow = u.airglow;
+  a.airglowAltitudeM = u.airglowAltitudeM;
+  return a;
+}
+
+// Lights 2 i and 2 i + 1 of a list; a missing second one is dark.
+inline AtmosphereLights lightPair(const std::vector<Light>& lights, std::size_t i) {
+  AtmosphereLights p{vec3(0, 0, 1), vec3(0), vec3(0, 0, 1), vec3(0)};
+  if (2 * i < lights.size()) {
+    p.direction0 = lights[2 * i].direction;
+    p.illuminance0 = lights[2 * i].illuminance;
+  }
+  if (2 * i + 1 < lights.size()) {
+    p.direction1 = lights[2 * i + 1].direction;
+    p.illuminance1 = lights[2 * i + 1].illuminance;
+  }
+  return p;
+}
+
+}  // namespace welkin::sky::shared

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coefficients of the air in linear Rec. 709.
+//
+// How a spectrum becomes three numbers: the coefficient of a primary is the spectral coefficient weighted by
+// sunlight times that primary's colour-matching function (negative lobes included), so that a thin layer has
+// exactly the colour of the spectral answer, both in what it scatters and in what it takes away.
+// exp(-coefficient x path) then follows the spectral transmittance of red and green within 4 % down to air
+// mass 6, and the luminance of direct sunlight within 8 % down to air mass 20. Inputs: solar spectrum ASTM
+// G173-03 (extraterrestrial), CIE 1931 functions as fitted by C. Wyman, P.-P. Sloan and P. Shirley 2013.
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/units.h"
+#include "welkin/sky/atmosphere.h"
+
+namespace welkin::sky {
+namespace {
+
+constexpr double kTopAltitudeM = 100e3;
+
+// Vertical optical depth of the air above sea level: B. A. Bodhaine et al. 1999, "On Rayleigh optical depth
+// calculations", eq. 30 (0.0971 at 550 nm).
+constexpr glm::vec3 kRayleighOpticalDepth{0.05077f, 0.09823f, 0.23600f};
+constexpr double kRayleighScaleHeightM = 8400.0;  // column over density at sea level
+
+// Vertical optical depth of 300 Dobson units; cross-sections by A. Serdyuchenko et al. 2014 at 223 K. The
+// blue primary's is nothing within its accuracy (-0.0005).
+constexpr glm::vec3 kOzoneOpticalDepth300{0.03723f, 0.02688f, 0.0f};
+constexpr double kOzoneAltitudeM = 25e3;
+constexpr double kOzoneHalfWidthM = 15e3;
+
+// Wavelengths at which an Angstrom power law has the primaries' coefficients, within 0.5 % for exponents 0
+// to 2.
+constexpr glm::dvec3 kAngstromWavelengthNm{640.4, 545.6, 441.6};
+
+// Colour of the natural night sky without moon: near white, a little warm (C. Leinert et al. 1998, "The 1997
+// reference of diffuse night sky brightness": the sum of airglow, zodiacal light and starlight has B - V of
+// about 0.9 to the sun's 0.65).
+constexpr glm::vec3 kAirglowColour{1.12f, 0.98f, 0.85f};
+constexpr double kAirglowAltitudeM = 90e3;
+
+// Haze is coloured where its particles are small and grey where they are fog: exponent 1.3 at 20 km of
+// visibility and beyond, 0 at 1 km.
+double angstromExponent(double visibilityM) {
+  return 1.3 * std::clamp(std::log(visibilityM / 1e3) / std::log(20.0), 0.0, 1.0);
+}
+
+// The thicker the haze, the shallower: a 100 m fog is not 1,200 m deep. The height goes with the root of the
+// visibility under 10 km, which keeps the optical depth of the column between 0.5 at 10 km, 1.5 at 1 km and 5
+// at 100 m.
+double hazeScaleHeightM(double fullM, double visibilityM) {
+  return fullM * std::clamp(std::sqrt(visibilityM / 10e3), 0.1, 1.0);
+}
+
+}  // namespace
+
+AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double visibilityM,
+                                      double groundAltitudeM, glm::vec3 groundAlbedo) {
+  AtmosphereUniforms u;
+  u.seaRadiusM = static_cast<float>(kEarthRadiusM);
+  u.groundAltitudeM = static_cast<float>(groundAltitudeM);
+  u.topAltitudeM = static_cast<float>(kTopAltitudeM);
+  u.rayleighScattering = kRayleighOpticalDepth / static_cast<float>(kRayleighScaleHeightM);
+  u.rayleighScaleHeightM = static_cast<float>(kRayleighScaleHeightM);
+
+  // H. Koschmieder 1924 with a contrast threshold of 2 %. What the air itself takes at 550 nm is not the
+  // haze's; a visibility beyond that of pure air leaves no haze.
+  const double total = 3.912 / std::max(visibilityM, 1.0);
+  const double air =
+      kRayleighOpticalDepth.y / kRayleighScaleHeightM * std::exp(-groundAltitudeM / kRayleighScaleHeightM);
+  const double aerosol = std::max(total - air, 0.0);
+  const double exponent = angstromExponent(visibilityM);
+  for (int c = 0; c < 3; ++c) {
+    u.aerosolExtinction[c] =
+        static_cast<float>(aerosol * std::pow(kAngstromWavelengthNm[c] / 550.0, -exponent));
+  }
+  u.aerosolScattering = u.aerosolExtinction * static_cast<float>(params.aerosolAlbedo);
+  u.aerosolScaleHeightM = static_cast<float>(hazeScaleHeightM(params.aerosolScaleHeightM, visibilityM));
+  u.aerosolG = static_cast<float>(params.aerosolG);
+
+  u.ozoneAbsorption = kOzoneOpticalDepth300 * static_cast<float>(params.ozoneDu / 300.0 / kOzoneHalfWidthM);
+  u.ozoneAltitudeM = static_cast<float>(kOzoneAltitudeM);
+  u.ozoneHalfWidthM = static_cast<float>(kOzoneHalfWidthM);
+  u.groundAlbedo = groundAlbedo;
+  u.airglow = kAirglowColour * static_cast<float>(params.airglowCdPerM2);
+  u.airglowAltitudeM = static_cast<float>(kAirglowAltitudeM);
+  return u;
+}
+
+}  // namespace welkin::sky
