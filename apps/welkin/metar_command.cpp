@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "metar_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "welkin/core/error.h"
+#include "welkin/core/units.h"
+#include "welkin/weather/metar.h"
+
+namespace welkin::app {
+namespace {
+
+using weather::Metar;
+using weather::MetarBound;
+using weather::MetarClear;
+using weather::MetarCloudType;
+using weather::MetarCover;
+using weather::MetarResult;
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json orNull(const std::optional<T>& x) {
+  return x ? Json(*x) : Json(nullptr);
+}
+
+const char* coverName(MetarCover cover) {
+  switch (cover) {
+    case MetarCover::kFew:
+      return "FEW";
+    case MetarCover::kScattered:
+      return "SCT";
+    case MetarCover::kBroken:
+      return "BKN";
+    case MetarCover::kOvercast:
+      return "OVC";
+    case MetarCover::kUnknown:
+      return "///";
+  }
+  return "///";
+}
+
+Json typeName(MetarCloudType type) {
+  switch (type) {
+    case MetarCloudType::kCumulonimbus:
+      return "CB";
+    case MetarCloudType::kToweringCumulus:
+      return "TCU";
+    case MetarCloudType::kNone:
+      break;
+  }
+  return nullptr;
+}
+
+Json clearName(MetarClear clear) {
+  switch (clear) {
+    case MetarClear::kSkc:
+      return "SKC";
+    case MetarClear::kClr:
+      return "CLR";
+    case MetarClear::kNsc:
+      return "NSC";
+    case MetarClear::kNcd:
+      return "NCD";
+    case MetarClear::kNotSaid:
+      break;
+  }
+  return nullptr;
+}
+
+Json decoded(const Metar& m) {
+  Json j;
+  j["station"] = m.station.empty() ? Json(nullptr) : Json(m.station);
+  j["day"] = orNull(m.day);
+  j["hour"] = orNull(m.hour);
+  j["minute"] = orNull(m.minute);
+  j["auto"] = m.automatic;
+  j["wind"] = {{"direction_deg", orNull(m.wind.directionDeg)},
+               {"variable", m.wind.variable},
+               {"speed_mps", orNull(m.wind.speedMps)},
+               {"gust_mps", orNull(m.wind.gustMps)}};
+  j["visibility_m"] = orNull(m.visibilityM);
+  j["cavok"] = m.cavok;
+  j["layers"] = Json::array();
+  for (const auto& layer : m.layers) {
+    j["layers"].push_back({{"cover", coverName(layer.cover)},
+                           {"base_ft", orNull(layer.baseFt)},
+                           {"type", typeName(layer.type)}});
+  }
+  j["clear"] = clearName(m.clear);
+  j["vertical_visibility_ft"] = orNull(m.verticalVisibilityFt);
+  j["weather"] = m.weather;
+  j["temperature_c"] = orNull(m.temperatureC);
+  j["dewpoint_c"] = orNull(m.dewPointC);
+  j["pressure_hpa"] = orNull(m.pressureHpa);
+  // Beyond the fixed fields: what they cannot tell apart.
+  j["visibility_bound"] = m.visibilityBound == MetarBound::kAtLeast    ? Json(">")
+                          : m.visibilityBound == MetarBound::kLessThan ? Json("<")
+                                                                       : Json(nullptr);
+  j["sky_obscured"] = m.skyObscured;
+  j["nil"] = m.nil;
+  return j;
+}
+
+std::string dump(const Json& j) {
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string windText(const weather::MetarWind& w) {
+  if (!w.speedMps) return "missing";
+  if (*w.speedMps == 0.0) return "calm";
+  std::string s = w.variable       ? "variable"
+                  : w.directionDeg ? fmt::format("from {} degrees", *w.directionDeg)
+                                   : "direction missing";
+  s += fmt::format(", {}{:.1f} m/s", w.speedAtLeast ? "at least " : "", *w.speedMps);
+  if (w.gustMps) s += fmt::format(", gusts {:.1f} m/s", *w.gustMps);
+  return s;
+}
+
+std::string visibilityText(const Metar& m) {
+  if (!m.visibilityM) return "missing";
+  const char* bound = m.visibilityBound == MetarBound::kAtLeast    ? "at least "
+                      : m.visibilityBound == MetarBound::kLessThan ? "less than "
+                                                                   : "";
+  return fmt::format("{}{:.0f} m{}", bound, *m.visibilityM, m.cavok ? " (CAVOK)" : "");
+}
+
+std::string skyText(const Metar& m) {
+  std::string s;
+  const auto add = [&](const std::string& part) { s += (s.empty() ? "" : ", ") + part; };
+  if (m.skyObscured) {
+    add(m.verticalVisibilityFt
+            ? fmt::format("obscured, vertical visibility {:.0f} m", *m.verticalVisibilityFt * kMetresPerFoot)
+            : std::string("obscured"));
+  }
+  for (const auto& layer : m.layers) {
+    std::string part =
+        layer.cover == MetarCover::kUnknown ? "cloud of unknown amount" : coverName(layer.cover);
+    if (layer.type == MetarCloudType::kCumulonimbus) part += " CB";
+    if (layer.type == MetarCloudType::kToweringCumulus) part += " TCU";
+    part += layer.baseFt ? fmt::format(" at {:.0f} m ({} ft)", *layer.baseFt * kMetresPerFoot, *layer.baseFt)
+                         : " at unknown height";
+    add(part);
+  }
+  if (m.clear != MetarClear::kNotSaid) add(clearName(m.clear).get<std::string>());
+  return s.empty() ? "no cloud reported" : s;
+}
+
+}  // namespace
+
+std::string metarToJson(std::string_view report) {
+  const MetarResult r = weather::parseMetar(report);
+  Json j;
+  if (!r.ok()) {
+    j["error"] = r.errors.front().reason;
+    j["column"] = r.errors.front().column;
+    j["report"] = report;
+  }
+  // Where neither station nor time could be read there is nothing to say but the error.
+  if (r.ok() || !r.metar.station.empty() || r.metar.day) {
+    const Json d = decoded(r.metar);
+    for (const auto& [key, value] : d.items()) j[key] = value;
+  }
+  if (!r.ok()) {
+    for (const auto& e : r.errors) j["errors"].push_back({{"column", e.column}, {"reason", e.reason}});
+  }
+  return dump(j);
+}
+
+std::string metarToText(std::string_view report) {
+  const MetarResult r = weather::parseMetar(report);
+  const Metar& m = r.metar;
+  std::string s;
+  if (!m.station.empty() || m.day) {
+    s += m.station.empty() ? "station missing" : m.station;
+    if (m.day) s += fmt::format(", day {} at {:02}:{:02} UTC", *m.day, *m.hour, *m.minute);
+    if (m.automatic) s += ", automatic";
+    if (m.corrected) s += ", corrected";
+    s += m.nil ? ": no report\n" : "\n";
+  }
+  if (!s.empty() && !m.nil) {
+    s += "  wind          " + windText(m.wind) + "\n";
+    s += "  visibility    " + visibilityText(m) + "\n";
+    if (!m.weather.empty()) {
+      s += "  weather      ";
+      for (const auto& w : m.weather) s += " " + w;
+      s += "\n";
+    }
+    s += "  sky           " + skyText(m) + "\n";
+    if (m.temperatureC) s += fmt::format("  temperature   {:.1f} C", *m.temperatureC);
+    if (m.temperatureC && m.dewPointC) s += fmt::format(", dew point {:.1f} C", *m.dewPointC);
+    if (m.temperatureC) s += "\n";
+    if (m.pressureHpa) s += fmt::format("  pressure      {:.1f} hPa\n", *m.pressureHpa);
+  }
+  for (const auto& e : r.errors) s += fmt::format("  error         column {}: {}\n", e.column, e.reason);
+  return s;
+}
+
+int runMetarCommand(const std::vector<std::string>& reports, const std::optional<std::string>& file,
+                    bool json) {
+  bool anyError = false;
+  const auto show = [&](std::string_view report) {
+    const std::string out = json ? metarToJson(report) + "\n" : metarToText(report);
+    std::fwrite(out.data(), 1, out.size(), stdout);
+    anyError = anyError || !weather::parseMetar(report).ok();
+  };
+  for (const auto& report : reports) show(report);
+  if (file) {
+    std::ifstream opened;
+    if (*file != "-") {
+      opened.open(*file);
+      if (!opened) throw IoError("cannot read " + *file);
+    }
+    std::istream& in = *file == "-" ? std::cin : opened;
+    std::string line;
+    while (std::getline(in, line)) {
+      if (line.ends_with('\r')) line.pop_back();
+      const auto first = line.find_first_not_of(" \t");
+      if (first == std::string::npos || line[first] == '#') continue;
+      show(line);
+    }
+    if (in.bad()) throw IoError("cannot read " + *file);
+  }
+  return anyError ? 1 : 0;
+}
+
+}  // namespace welkin::app
