@@ -12,7 +12,7 @@ namespace {
 // there.
 bool digitsOrSolidi(Cursor& c, std::size_t count, std::optional<int>& value) {
   if (c.size() >= count && isAllSolidi(c.rest().substr(0, count))) {
-    c.eat(c.rest().substr(0, count));
+    c.skip(count);
     value.reset();
     return true;
   }
@@ -24,7 +24,7 @@ bool digitsOrSolidi(Cursor& c, std::size_t count, std::optional<int>& value) {
 bool skipDigitsOrSolidi(Cursor& c, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (!isDigit(c.peek()) && c.peek() != '/') return false;
-    c.eat(c.peek());
+    c.skip(1);
   }
   return true;
 }
@@ -57,25 +57,35 @@ bool eatAny(Cursor& c, const std::array<std::string_view, n>& words) {
   return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return c.eat(w); });
 }
 
-// Code table 4678 of WMO-No. 306.
-constexpr std::array<std::string_view, 8> kDescriptors = {"MI", "BC", "PR", "DR", "BL", "SH", "TS", "FZ"};
-constexpr std::array<std::string_view, 9> kPrecipitation = {"DZ", "RA", "SN", "SG", "IC",
-                                                            "PL", "GR", "GS", "UP"};
-constexpr std::array<std::string_view, 13> kObscurationAndOther = {"BR", "FG", "FU", "VA", "DU", "SA", "HZ",
-                                                                   "PY", "PO", "SQ", "FC", "SS", "DS"};
+// Code table 4678 of WMO-No. 306, two letters each.
+constexpr std::string_view kDescriptors = "MIBCPRDRBLSHTSFZ";
+constexpr std::string_view kPrecipitation = "DZRASNSGICPLGRGSUP";
+constexpr std::string_view kObscurationAndOther = "BRFGFUVADUSAHZPYPOSQFCSSDS";
+
+bool eatPair(Cursor& c, std::string_view pairs) {
+  if (c.size() < 2) return false;
+  const char first = c.rest()[0], second = c.rest()[1];
+  for (std::size_t i = 0; i < pairs.size(); i += 2) {
+    if (pairs[i] == first && pairs[i + 1] == second) {
+      c.skip(2);
+      return true;
+    }
+  }
+  return false;
+}
 
 // Descriptors and phenomena, without what stands before them.
 bool isWeatherBody(Cursor c) {
   bool aloneAllowed = false;  // TS and SH need no phenomenon
   for (int i = 0; i < 2; ++i) {
     const std::string_view word = c.rest().substr(0, 2);
-    if (!eatAny(c, kDescriptors)) break;
+    if (!eatPair(c, kDescriptors)) break;
     aloneAllowed = aloneAllowed || word == "TS" || word == "SH";
   }
   if (c.done()) return aloneAllowed;
-  if (eatAny(c, kObscurationAndOther)) return c.done();
+  if (eatPair(c, kObscurationAndOther)) return c.done();
   int phenomena = 0;
-  while (phenomena < 3 && eatAny(c, kPrecipitation)) ++phenomena;
+  while (phenomena < 3 && eatPair(c, kPrecipitation)) ++phenomena;
   return phenomena > 0 && c.done();
 }
 

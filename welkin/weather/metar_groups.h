@@ -32,6 +32,7 @@ class Cursor {
     rest_.remove_prefix(word.size());
     return true;
   }
+  void skip(std::size_t count) { rest_.remove_prefix(count); }  // count <= size()
   // Exactly `count` decimal digits.
   std::optional<int> digits(std::size_t count);
   // As many digits as follow, if they are between `least` and `most`.
