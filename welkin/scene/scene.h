@@ -68,6 +68,15 @@ struct Scene {
 };
 void describe(Scene& s, ParamVisitor& v);
 
+// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases. Throws ParameterError.
+void validate(const Scene& s);
+
+// The size of a picture in this projection when nobody asked for one.
+struct PictureSize {
+  std::int64_t width = 0, height = 0;  // pixels
+};
+PictureSize naturalSize(Projection projection);
+
 }  // namespace welkin::scene
 
 namespace welkin {

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file that includes CLI11 (it is heavy to compile).
+#include "command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "usage_error.h"
+#include "welkin/core/params.h"
+#include "welkin/scene/param_docs.h"
+#include "welkin/scene/scene.h"
+
+namespace welkin::app {
+namespace {
+
+using Docs = std::vector<scene::ParamDoc>;
+
+// The help of a flag that stands for one described parameter.
+std::string helpOf(const Docs& docs, std::string_view path) {
+  const scene::ParamDoc& d = scene::docOf(docs, path);
+  std::string facts = d.range;
+  if (d.type.find('|') != std::string::npos) facts = d.type;
+  if (!d.unit.empty()) facts += (facts.empty() ? "" : " ") + d.unit;
+  if (d.defaultValue != "absent") facts += (facts.empty() ? "default " : "; default ") + d.defaultValue;
+  return facts.empty() ? d.meaning : d.meaning + " (" + facts + ")";
+}
+
+std::string helpOfSeveral(const Docs& docs, std::initializer_list<std::string_view> paths) {
+  std::string help;
+  for (const std::string_view path : paths) {
+    const scene::ParamDoc& d = scene::docOf(docs, path);
+    help += (help.empty() ? "" : "; ") + d.meaning;
+    if (!d.range.empty()) help += " (" + d.range + (d.unit.empty() ? "" : " " + d.unit) + ")";
+  }
+  return help;
+}
+
+// Help in lines that fit a terminal beside the names of the flags.
+constexpr std::size_t kNameColumns = 34, kHelpColumns = 76;
+std::string wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string out, word;
+  std::size_t column = 0;
+  while (words >> word) {
+    if (column > 0 && column + 1 + word.size() > kHelpColumns) {
+      out += '\n';
+      column = 0;
+    }
+    if (column > 0) out += ' ', ++column;
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
+CLI::Option* add(CLI::App* app, const std::string& name, Flag& value, const char* typeName,
+                 const std::string& help) {
+  return app
+      ->add_option_function<std::string>(
+          name, [&value](const std::string& text) { value = text; }, wrapped(help))
+      ->type_name(typeName);
+}
+
+void describeRender(CLI::App* app, RenderArgs& a) {
+  const Docs docs = scene::documentParams<scene::Scene>();
+  const auto one = [&docs](const char* path) { return helpOf(docs, path); };
+  add(app, "scene", a.scene, "SCENE.toml", "scene file; `welkin help scene` lists its keys");
+  add(app, "-o,--output", a.out, "OUT",
+      "picture .png .exr .hdr, video .mp4 .webm, or frames as name_%04d.png; .exr and .hdr hold luminance in "
+      "cd/m2");
+  add(app, "--metar", a.metar, "REPORT", one("metar"))->group("Sky");
+  add(app, "--place", a.place, "LAT,LON[,ALT_M]",
+      helpOfSeveral(docs, {"place.latitude_deg", "place.longitude_deg", "place.altitude_m"}))
+      ->group("Sky");
+  add(app, "--time", a.time, "UTC", one("time"))->group("Sky");
+  add(app, "--at", a.at, "SECONDS", one("at_s"))->group("Sky");
+  add(app, "--seed", a.seed, "N", one("seed"))->group("Sky");
+  add(app, "--eye", a.eye, "M", one("camera.eye_m"))->group("Eye");
+  add(app, "--look", a.look, "HEADING,PITCH[,FOV]",
+      helpOfSeveral(docs, {"camera.heading_deg", "camera.pitch_deg", "camera.fov_deg"}))
+      ->group("Eye");
+  add(app, "--projection", a.projection, "NAME", one("camera.projection"))->group("Eye");
+  add(app, "--size", a.size, "WxH",
+      helpOfSeveral(docs, {"output.width", "output.height"}) +
+          "; default 1280x720, fisheye 1024x1024, equirect 2048x1024, cubemap 3072x512")
+      ->group("Picture");
+  add(app, "--quality", a.quality, "NAME", one("output.quality"))->group("Picture");
+  add(app, "--exposure", a.exposure, "auto|EV", one("output.exposure_ev"))->group("Picture");
+  app->add_flag(
+         "--no-sun-disc", a.noSunDisc,
+         wrapped(
+             "leave out the discs of sun and moon, to light a scene with a lamp of your own in their place"))
+      ->group("Picture");
+  add(app, "--bits", a.bits, "8|16", "bits a channel of PNG (default 8)")->group("Picture");
+  add(app, "--renderer", a.renderer, "gpu|reference",
+      "gpu: OpenGL, on the processor where there is no GPU (default)")
+      ->group("Picture");
+  add(app, "--spp", a.spp, "N", "samples a pixel of the reference renderer")->group("Picture");
+  add(app, "--frames", a.frames, "N", one("output.frames"))->group("Sequences");
+  add(app, "--fps", a.fps, "F", one("output.fps"))->group("Sequences");
+  add(app, "--speed", a.speed, "S", one("output.speed"))->group("Sequences");
+  add(app, "--report", a.report, "FILE.json", "what was asked, what was delivered, time for each pass")
+      ->group("Running");
+  add(app, "--threads", a.threads, "N", "processor threads; the picture does not depend on it (default: all)")
+      ->group("Running");
+}
+
+// Names that one may have meant: "--flag" of this command, or commands.
+std::vector<std::string> flagNames(const CLI::App* app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* o : app->get_options())
+    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string didYouMean(const std::string& word, const std::vector<std::string>& names) {
+  const std::string near = nearestName(word, names);
+  return near.empty() ? "" : "; did you mean " + near + "?";
+}
+
+// CLI11 collects what it does not know (allow_extras); the first such word is the mistake to report.
+void refuseExtras(const CLI::App* app, const std::string& command) {
+  const std::vector<std::string> extras = app->remaining();
+  if (extras.empty()) return;
+  const std::string& word = extras.front();
+  const std::string where = command.empty() ? "" : command + ": ";
+  if (word.size() > 1 && word[0] == '-') {
+    const std::string flag = word.substr(0, word.find('='));
+    throw UsageError(where + "unknown flag " + flag + didYouMean(flag, flagNames(app)));
+  }
+  if (!command.empty()) throw UsageError(where + "unexpected \"" + word + "\"");
+  std::vector<std::string> commands;
+  for (const CLI::App* sub : app->get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(sub->get_name());
+  const std::string hint = didYouMean(word, commands);
+  throw UsageError("unknown command \"" + word + "\"" + (hint.empty() ? "; welkin --help lists them" : hint));
+}
+
+}  // namespace
+
+Command parseCommandLine(int argc, const char* const* argv) {
+  CLI::App root("From a weather report, or a few sliders, to a sky.", "welkin");
+  root.set_version_flag("--version", "welkin " WELKIN_VERSION);
+  root.require_subcommand(0, 1);
+  root.get_formatter()->column_width(kNameColumns);
+
+  RenderArgs render;
+  CLI::App* renderApp =
+      root.add_subcommand("render", "Draw a sky as a picture, an environment map or a video");
+  describeRender(renderApp, render);
+
+  MetarArgs metar;
+  CLI::App* metarApp = root.add_subcommand("metar", "Decode weather reports");
+  metarApp->add_option("report", metar.reports, "METAR or SPECI reports, each in quotes")
+      ->type_name("REPORT");
+  add(metarApp, "--file", metar.file, "F", "read reports from a file, one a line; - is standard input");
+  metarApp->add_flag("--json", metar.json, "one JSON object a line");
+
+  SunArgs sun;
+  CLI::App* sunApp = root.add_subcommand("sun", "Where sun and moon stand");
+  add(sunApp, "--place", sun.place, "LAT,LON[,ALT_M]",
+      "degrees, north and east positive; metres above sea level");
+  add(sunApp, "--time", sun.time, "UTC", "ISO 8601, 2026-06-21T18:30:00Z for instance");
+  sunApp->add_flag("--json", sun.json, "one JSON object");
+
+  InfoArgs info;
+  CLI::App* infoApp =
+      root.add_subcommand("info", "Say what a file holds: a scene file with every default filled in");
+  infoApp->add_option("file", info.file, "scene file (.toml)")->type_name("FILE");
+  infoApp->add_flag("--json", info.json, "as JSON");
+
+  Flag topic;
+  HelpSceneArgs helpScene;
+  CLI::App* helpApp =
+      root.add_subcommand("help", "Explain a command, or the keys of a scene file: welkin help scene");
+  add(helpApp, "topic", topic, "TOPIC", "a command, or scene");
+  helpApp->add_flag("--markdown", helpScene.markdown, "as the tables in docs/scene_file.md");
+
+  root.allow_extras();
+  for (CLI::App* sub : root.get_subcommands([](const CLI::App*) { return true; })) sub->allow_extras();
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return PrintText{root.help()};
+  } catch (const CLI::CallForVersion&) {
+    return PrintText{"welkin " WELKIN_VERSION "\n"};
+  } catch (const CLI::ParseError& e) {
+    throw UsageError(e.what());
+  }
+
+  const auto chosen = root.get_subcommands();
+  refuseExtras(&root, "");
+  if (chosen.empty())
+    throw UsageError("expected a command: render, metar, sun, info or help; welkin --help explains them");
+  refuseExtras(chosen[0], chosen[0]->get_name());
+  if (chosen[0] == renderApp) return render;
+  if (chosen[0] == metarApp) return metar;
+  if (chosen[0] == sunApp) return sun;
+  if (chosen[0] == infoApp) {
+    if (info.file.empty()) throw UsageError("info: expected a file");
+    return info;
+  }
+  if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};
+  if (*topic == "scene") return helpScene;
+  std::vector<std::string> topics{"scene"};
+  for (const CLI::App* sub : root.get_subcommands([](const CLI::App*) { return true; })) {
+    if (sub->get_name() == *topic) return PrintText{sub->help("welkin")};
+    topics.push_back(sub->get_name());
+  }
+  throw UsageError("help: there is no topic \"" + *topic + "\"" + didYouMean(*topic, topics));
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// From argv to plain structs. Values stay text here: what they mean and may be is known where parameters are
+// described, and is checked by whoever uses them, so that one mistake has one message.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace welkin::app {
+
+using Flag = std::optional<std::string>;  // absent when not on the command line
+
+struct RenderArgs {
+  Flag scene, out;
+  Flag metar, place, time, at, seed;
+  Flag eye, look, projection, size;
+  Flag renderer, quality, spp, exposure;
+  Flag frames, fps, speed;
+  Flag bits, report, threads;
+  bool noSunDisc = false;
+};
+
+struct MetarArgs {
+  std::vector<std::string> reports;
+  Flag file;
+  bool json = false;
+};
+
+struct SunArgs {
+  Flag place, time;
+  bool json = false;
+};
+
+struct InfoArgs {
+  std::string file;
+  bool json = false;
+};
+
+// `welkin help scene`; help of commands is PrintText.
+struct HelpSceneArgs {
+  bool markdown = false;
+};
+
+struct PrintText {
+  std::string text;
+};
+
+using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, HelpSceneArgs, PrintText>;
+
+// Throws UsageError, which names the nearest command or flag for one that does not exist.
+Command parseCommandLine(int argc, const char* const* argv);
+
+}  // namespace welkin::app

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program: chooses the command and turns exceptions into messages and exit codes.
+// 0: done. 1: what it was given to work on is wrong, or something failed. 2: called wrongly. 130:
+// interrupted.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "command_line.h"
+#include "help_command.h"
+#include "metar_command.h"
+#include "render_command.h"
+#include "render_settings.h"
+#include "sun_command.h"
+#include "usage_error.h"
+#include "welkin/scene/param_text.h"
+
+namespace welkin::app {
+namespace {
+
+int run(const RenderArgs& args) {
+  return runRender(args);
+}
+int run(const InfoArgs& args) {
+  return runInfo(args);
+}
+int run(const HelpSceneArgs& args) {
+  return runHelpScene(args);
+}
+
+int run(const PrintText& print) {
+  fmt::print("{}", print.text);
+  return 0;
+}
+
+int run(const MetarArgs& args) {
+  if (args.reports.empty() && !args.file) throw UsageError("metar: expected a report or --file F");
+  return runMetarCommand(args.reports, args.file, args.json);
+}
+
+int run(const SunArgs& args) {
+  if (!args.place) throw UsageError("sun: expected --place LAT,LON");
+  if (!args.time) throw UsageError("sun: expected --time UTC");
+  scene::Scene s;
+  setPlace(s, "--place", *args.place);
+  try {
+    scene::setParam(s, "time", *args.time);
+  } catch (const ParameterError& e) {
+    throw UsageError(std::string("--time: ") + e.what());
+  }
+  return runSunCommand(s.place.latitudeDeg, s.place.longitudeDeg, s.place.altitudeM, s.time, args.json);
+}
+
+int fail(int code, const char* message) {
+  fmt::print(stderr, "welkin: {}\n", message);
+  return code;
+}
+
+int runProgram(int argc, const char* const* argv) {
+  try {
+    const Command command = parseCommandLine(argc, argv);
+    const int code = std::visit([](const auto& args) { return run(args); }, command);
+    if (std::fflush(stdout) != 0) return fail(1, "standard output cannot be written");
+    return code;
+  } catch (const UsageError& e) {
+    return fail(2, e.what());
+  } catch (const Interrupted&) {
+    return fail(130, "interrupted");
+  } catch (const std::bad_alloc&) {
+    return fail(1, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(1, e.what());
+  }
+}
+
+}  // namespace
+}  // namespace welkin::app
+
+int main(int argc, char** argv) {
+  return welkin::app::runProgram(argc, argv);
+}

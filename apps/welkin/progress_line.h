@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// One line on standard error that says how far the work is and how long it still takes; nothing when that is
+// not a terminal.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace welkin::app {
+
+// "1:02:03", "2:05", "8 s": a duration as people say it.
+std::string durationText(double seconds);
+
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string label);
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine();  // wipes the line
+
+  // fraction of the whole work done, in [0, 1]. Draws at most ten times a second.
+  void show(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  bool terminal_;
+  bool drawn_ = false;
+  Clock::time_point begin_, last_;
+};
+
+}  // namespace welkin::app

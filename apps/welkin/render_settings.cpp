@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_settings.h"
+
+#include <charconv>
+#include <filesystem>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "usage_error.h"
+#include "welkin/scene/param_text.h"
+#include "welkin/scene/scene_file.h"
+
+namespace welkin::app {
+namespace {
+
+using scene::Scene;
+
+// Scene parameter `path` from the text of a flag.
+void set(Scene& s, const char* flag, std::string_view path, std::string_view text) {
+  try {
+    scene::setParam(s, path, text);
+  } catch (const ParameterError& e) {
+    throw UsageError(std::string(flag) + ": " + e.what());
+  }
+}
+
+void set(Scene& s, const char* flag, std::string_view path, const Flag& text) {
+  if (text) set(s, flag, path, std::string_view(*text));
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t at = text.find(separator);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+// A text of several values, the last of which may be left out.
+void setList(Scene& s, const std::string& flag, const std::string& text, char separator,
+             std::string_view expected, std::initializer_list<std::string_view> paths, std::size_t least) {
+  const auto parts = split(text, separator);
+  if (parts.size() < least || parts.size() > paths.size())
+    throw UsageError(flag + ": expected " + std::string(expected) + ", found \"" + text + "\"");
+  for (std::size_t i = 0; i < parts.size(); ++i) set(s, flag.c_str(), paths.begin()[i], parts[i]);
+}
+
+int wholeNumber(const char* flag, const std::string& text, int low, int high) {
+  int n = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  if (error != std::errc() || end != text.data() + text.size() || n < low || n > high)
+    throw UsageError(std::string(flag) + ": expected a whole number from " + std::to_string(low) + " to " +
+                     std::to_string(high) + ", found \"" + text + "\"");
+  return n;
+}
+
+void checkRenderer(const RenderArgs& a) {
+  const std::string name = a.renderer.value_or("gpu");
+  if (name == "reference")
+    throw UsageError("--renderer: the reference renderer is not available in this version; expected gpu");
+  if (name != "gpu") throw UsageError("--renderer is \"" + name + "\"; expected gpu or reference");
+  if (a.spp)
+    throw UsageError("--spp belongs to the reference renderer, which is not available in this version");
+}
+
+OutputKind kindOf(const std::string& out) {
+  const std::string extension = std::filesystem::path(out).extension().string();
+  if (extension == ".png") return OutputKind::kPng;
+  if (extension == ".exr") return OutputKind::kExr;
+  if (extension == ".hdr") return OutputKind::kHdr;
+  if (extension == ".mp4" || extension == ".webm") return OutputKind::kVideo;
+  throw UsageError(out + ": " + (extension.empty() ? "no extension" : "unknown extension " + extension) +
+                   "; expected .png, .exr, .hdr, .mp4 or .webm");
+}
+
+}  // namespace
+
+void setPlace(Scene& s, const std::string& flag, const std::string& text) {
+  setList(s, flag, text, ',', "LAT,LON or LAT,LON,ALT_M",
+          {"place.latitude_deg", "place.longitude_deg", "place.altitude_m"}, 2);
+}
+
+RenderSettings renderSettings(const RenderArgs& a) {
+  checkRenderer(a);
+  RenderSettings r;
+  if (!a.out) throw UsageError("render: expected -o OUT, the file to write");
+  r.out = *a.out;
+  r.kind = kindOf(r.out);
+  r.numbered = std::filesystem::path(r.out).filename().string().find('%') != std::string::npos;
+  if (r.numbered && r.kind == OutputKind::kVideo)
+    throw UsageError(r.out + ": a video has no place for a frame number; expected a name without %");
+  if (a.bits) {
+    r.pngBits = wholeNumber("--bits", *a.bits, 8, 16);
+    if (r.pngBits != 8 && r.pngBits != 16) throw UsageError("--bits is " + *a.bits + "; expected 8 or 16");
+    if (r.kind != OutputKind::kPng) throw UsageError("--bits is for .png only");
+  }
+  if (a.threads) r.threads = wholeNumber("--threads", *a.threads, 1, 1024);
+  if (a.report) r.report = *a.report;
+
+  // The place first: what is typical of a layer in the file depends on the latitude.
+  Scene flagged;
+  if (a.place) setPlace(flagged, "--place", *a.place);
+  bool sizeGiven = a.size.has_value();
+  if (a.scene) {
+    scene::SceneFile file = scene::readSceneFile(
+        *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt);
+    sizeGiven = sizeGiven || file.gives("output.width") || file.gives("output.height");
+    r.scene = std::move(file.scene);
+  }
+  Scene& s = r.scene;
+  if (a.place) setPlace(s, "--place", *a.place);
+  set(s, "--metar", "metar", a.metar);
+  set(s, "--time", "time", a.time);
+  set(s, "--at", "at_s", a.at);
+  set(s, "--seed", "seed", a.seed);
+  set(s, "--eye", "camera.eye_m", a.eye);
+  if (a.look)
+    setList(s, "--look", *a.look, ',', "HEADING,PITCH or HEADING,PITCH,FOV",
+            {"camera.heading_deg", "camera.pitch_deg", "camera.fov_deg"}, 2);
+  set(s, "--projection", "camera.projection", a.projection);
+  if (a.size) {
+    setList(s, "--size", *a.size, 'x', "WIDTHxHEIGHT, 1280x720 for instance",
+            {"output.width", "output.height"}, 2);
+  } else if (!sizeGiven) {
+    const scene::PictureSize size = scene::naturalSize(s.camera.projection);
+    s.output.width = size.width;
+    s.output.height = size.height;
+  }
+  set(s, "--quality", "output.quality", a.quality);
+  set(s, "--exposure", "output.exposure_ev", a.exposure);
+  if (a.noSunDisc) s.output.sunDisc = false;
+  set(s, "--frames", "output.frames", a.frames);
+  set(s, "--fps", "output.fps", a.fps);
+  set(s, "--speed", "output.speed", a.speed);
+  try {
+    scene::validate(s);
+  } catch (const ParameterError& e) {
+    if (a.size || a.projection || !a.scene) throw UsageError(e.what());
+    throw ParameterError(*a.scene + ": " + e.what());
+  }
+  if (s.output.frames > 1 && !r.numbered && r.kind != OutputKind::kVideo)
+    throw UsageError(
+        r.out + ": " + std::to_string(s.output.frames) +
+        " frames need a place for their number; expected a name such as name_%04d.png, or a video");
+  return r;
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "welkin/scene/param_json.h"
+#include "welkin/scene/param_text.h"
+
+namespace welkin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json bodyJson(const sky::Body& body) {
+  return {{"azimuth_deg", body.azimuthDeg}, {"elevation_deg", body.elevationDeg}};
+}
+
+Json coverJson(const scene::LayerCover& c) {
+  return {{"requested_oktas", c.requestedOktas}, {"delivered_oktas", c.deliveredOktas}};
+}
+
+std::string genusName(weather::Genus genus) {
+  return std::string(kEnumNames<weather::Genus>[static_cast<std::size_t>(genus)]);
+}
+
+Json layersJson(const scene::SkyState& state) {
+  Json layers = Json::array();
+  for (std::size_t i = 0; i < state.weather.layers.size(); ++i) {
+    const weather::Layer& l = state.weather.layers[i];
+    Json j = {{"genus", genusName(l.genus)},
+              {"base_m", l.baseM},
+              {"top_m", l.topM},
+              {"base_assumed", l.baseAssumed},
+              {"extinction_per_m", l.extinctionPerM},
+              {"wind_from_deg", l.windFromDeg},
+              {"wind_speed_mps", l.windSpeedMps}};
+    j.update(coverJson(i < state.cover.size() ? state.cover[i] : scene::LayerCover{l.oktas, 0.0}));
+    layers.push_back(std::move(j));
+  }
+  return layers;
+}
+
+}  // namespace
+
+double peakRssMib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
+  const scene::SkyState& s = r.state;
+  Json j;
+  j["welkin"] = WELKIN_VERSION;
+  j["output"] = settings.out;
+  j["renderer"] = "gpu";
+  j["device"] = r.device;
+  j["time"] = formatUtcTime(s.time);
+  j["place"] = {{"latitude_deg", s.scene.place.latitudeDeg},
+                {"longitude_deg", s.scene.place.longitudeDeg},
+                {"altitude_m", s.scene.place.altitudeM}};
+  j["seed"] = s.scene.seed;
+  j["metar"] = s.scene.metar ? Json(*s.scene.metar) : Json();
+  j["sun"] = bodyJson(s.ephemeris.sun);
+  j["moon"] = bodyJson(s.ephemeris.moon);
+  j["moon"]["illuminated_fraction"] = s.ephemeris.moonIlluminatedFraction;
+  j["heading_deg"] = s.headingDeg;
+  j["visibility_m"] = s.weather.visibilityM;
+  j["layers"] = layersJson(s);
+  j["sky_cover"] = coverJson(s.skyCover);
+  j["notes"] = s.weather.notes;
+  j["exposure_ev"] = r.frames.empty() ? Json() : Json(r.frames.front().exposureEv);
+  j["passes"] = Json::array();
+  for (const render::PassTime& p : r.passes) j["passes"].push_back({{"name", p.name}, {"ms", p.ms}});
+  if (settings.scene.output.frames > 1) {
+    j["frames"] = Json::array();
+    for (const FrameReport& f : r.frames) {
+      Json frame = {{"time", formatUtcTime(f.time)}, {"exposure_ev", f.exposureEv}, {"ms", f.ms}};
+      if (!f.path.empty()) frame["path"] = f.path;
+      j["frames"].push_back(std::move(frame));
+    }
+  }
+  j["total_ms"] = r.totalMs;
+  j["peak_rss_mib"] = peakRssMib();
+  j["scene"] = Json::parse(scene::toJson(settings.scene));
+  // A path or a report may hold bytes that are not UTF-8; they become U+FFFD.
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::pair<std::string, std::string>> pictureMetadata(const scene::SkyState& s,
+                                                                 double exposureEv) {
+  const scene::Place& p = s.scene.place;
+  std::vector<std::pair<std::string, std::string>> m{
+      {"welkin_version", WELKIN_VERSION},
+      {"welkin_time", formatUtcTime(s.time)},
+      {"welkin_place", scene::numberText(p.latitudeDeg) + "," + scene::numberText(p.longitudeDeg) + "," +
+                           scene::numberText(p.altitudeM)},
+      {"welkin_seed", std::to_string(s.scene.seed)},
+      {"welkin_projection",
+       std::string(kEnumNames<scene::Projection>[static_cast<std::size_t>(s.scene.camera.projection)])},
+      {"welkin_heading_deg", scene::numberText(s.headingDeg)},
+      {"welkin_exposure_ev", scene::numberText(exposureEv)},
+      {"welkin_sun_disc", s.scene.output.sunDisc ? "true" : "false"}};
+  if (s.scene.metar) m.emplace_back("welkin_metar", *s.scene.metar);
+  return m;
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// `--report`: what was asked, what was delivered and what it cost, as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render_settings.h"
+#include "welkin/render/sky_renderer.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::app {
+
+struct FrameReport {
+  std::string path;  // empty for a frame of a video
+  UtcTime time;
+  double exposureEv = 0.0;
+  double ms = 0.0;  // wall clock, writing included
+};
+
+struct RenderReport {
+  scene::SkyState state;                 // of the first frame
+  std::vector<render::PassTime> passes;  // of the first frame, the program's own first
+  std::string device;
+  std::vector<FrameReport> frames;
+  double totalMs = 0.0;
+};
+
+// The JSON text of the report.
+std::string reportJson(const RenderSettings& settings, const RenderReport& report);
+
+// Name, value: what a picture file says about itself.
+std::vector<std::pair<std::string, std::string>> pictureMetadata(const scene::SkyState& state,
+                                                                 double exposureEv);
+
+// The most memory that this process has held so far.
+double peakRssMib();
+
+}  // namespace welkin::app

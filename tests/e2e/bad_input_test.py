@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bad input to `welkin render`: a clear message, the right exit code, nothing left behind, and nothing heavy computed first."""
+import os
+import random
+
+from welkin_program import CUMULUS, TINY, ProgramTest, main
+
+NO_GRAPHICS = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent.json", "LIBGL_DRIVERS_PATH": "/nonexistent"}
+
+
+class SceneFiles(ProgramTest):
+    def refuse(self, text, message):
+        self.write("s.toml", text)
+        self.fail_with(1, "s.toml:" + message, "render", "s.toml", "-o", "x.png")
+
+    def test_unknown_key(self):
+        self.refuse("[place]\nlatitude = 4\n", '2:1: unknown key "latitude" in [place]; did you mean "latitude_deg"?')
+        self.refuse('[[layer]]\ngenus = "cirrus"\nokats = 2\n', '3:1: unknown key "okats" in [[layer]]; did you mean "oktas"?')
+
+    def test_wrong_type(self):
+        self.refuse('[place]\nlatitude_deg = "north"\n', "2:16: latitude_deg: expected a number, found text")
+        self.refuse("seed = 1.5\n", "1:8: seed: expected a whole number, found a number")
+
+    def test_latitude_95(self):
+        self.refuse("[place]\nlatitude_deg = 95\n", "2:16: latitude_deg is 95; expected -90 to 90 deg")
+
+    def test_not_a_number(self):
+        self.refuse("[camera]\nfov_deg = nan\n", "2:11: fov_deg is nan; expected 1 to 170 deg")
+
+    def test_syntax(self):
+        self.refuse("seed = 1\nplace = {\n", "2:")
+
+    def test_sizes(self):
+        self.refuse("[output]\nwidth = 0\n", "2:9: width is 0; expected 1 to 16384 pixels")
+
+    def test_layer_upside_down(self):
+        self.write("s.toml", '[[layer]]\ngenus = "cumulus"\nbase_m = 2000\ntop_m = 1000\n')
+        self.fail_with(1, "s.toml: layer 1: top_m is not above base_m", "render", "s.toml", "-o", "x.png")
+
+    def test_missing_and_folder(self):
+        self.fail_with(1, "none.toml: cannot be opened: No such file", "render", "none.toml", "-o", "x.png")
+        os.mkdir(self.folder / "dir.toml")
+        self.fail_with(1, "dir.toml: is a folder", "render", "dir.toml", "-o", "x.png")
+
+
+class Flags(ProgramTest):
+    def refuse(self, message, *args):
+        self.fail_with(2, message, "render", "-o", "x.png", *args)
+
+    def test_latitude_95(self):
+        self.refuse("--place: latitude_deg is 95; expected -90 to 90 deg", "--place", "95,0")
+
+    def test_wrong_type(self):
+        self.refuse('--place: latitude_deg: expected a number, found "north"', "--place", "north,0")
+        self.refuse('--place: expected LAT,LON or LAT,LON,ALT_M, found "47"', "--place", "47")
+        self.refuse("--seed: seed: expected a whole number", "--seed", "many")
+        self.refuse("--time: time: ", "--time", "noon")
+        self.refuse("did you mean fisheye?", "--projection", "fisheey")
+
+    def test_sizes(self):
+        self.refuse("--size: width is 0; expected 1 to 16384 pixels", "--size", "0x0")
+        self.refuse("--size: width is 100000; expected 1 to 16384 pixels", "--size", "100000x100000")
+        self.refuse("size 16384x16384 has 268435456 pixels; expected at most 134217728", "--size", "16384x16384")
+        self.refuse("--size: expected WIDTHxHEIGHT", "--size", "big")
+        self.refuse("does not fit a cubemap; expected six square faces", "--size", "96x54", "--projection", "cubemap")
+
+    def test_renderers(self):
+        self.refuse("the reference renderer is not available in this version; expected gpu", "--renderer", "reference")
+        self.refuse("expected gpu or reference", "--renderer", "cpu")
+        self.refuse("--spp belongs to the reference renderer", "--spp", "16")
+
+    def test_frames_need_a_number(self):
+        self.refuse("x.png: 10 frames need a place for their number", "--frames", "10")
+
+    def test_no_output(self):
+        self.fail_with(2, "expected -o OUT", "render")
+
+
+class Outputs(ProgramTest):
+    def test_unknown_extension(self):
+        self.fail_with(2, "x.gif: unknown extension .gif; expected .png, .exr, .hdr, .mp4 or .webm", "render", "-o", "x.gif")
+        self.fail_with(2, "picture: no extension", "render", "-o", "picture")
+
+    def test_missing_folder(self):
+        self.fail_with(1, "none/x.png: there is no folder none", "render", *CUMULUS, *TINY, "-o", "none/x.png")
+        self.fail_with(1, "none/r.json: there is no folder none", "render", *CUMULUS, *TINY, "-o", "x.png", "--report",
+                       "none/r.json")
+
+    def test_unwritable_folder(self):
+        # Even the superuser cannot create files here.
+        self.fail_with(1, "/proc/x.png: ", "render", *CUMULUS, *TINY, "-o", "/proc/x.png")
+
+    def test_folder_without_permission(self):
+        if os.geteuid() == 0:
+            self.skipTest("permissions do not hold the superuser back")
+        os.mkdir(self.folder / "locked", 0o555)
+        self.fail_with(1, "locked/x.png: the folder locked cannot be written", "render", *CUMULUS, *TINY, "-o", "locked/x.png")
+
+    def test_output_is_a_folder(self):
+        os.mkdir(self.folder / "x.png")
+        self.fail_with(1, "x.png: is a folder", "render", *CUMULUS, *TINY, "-o", "x.png")
+
+    def test_bad_patterns(self):
+        for pattern in ("x_%s.png", "x_%d_%d.png", "x_%n.png", "x_%.png", "x_%99999d.png"):
+            self.fail_with(2, pattern, "render", *CUMULUS, *TINY, "-o", pattern, "--frames", "2")
+
+
+class Weather(ProgramTest):
+    def test_empty_metar(self):
+        self.fail_with(1, "", "render", "--metar", "", *TINY, "-o", "x.png")
+
+    def test_random_bytes(self):
+        rng = random.Random(7)
+        for _ in range(10):
+            noise = bytes(rng.choice([b for b in range(1, 256) if b != 10]) for _ in range(rng.randrange(1, 60)))
+            self.fail_with(1, "", b"render", b"--metar=" + noise, *[a.encode() for a in TINY], b"-o", b"x.png")
+
+
+class Machine(ProgramTest):
+    def test_no_graphics(self):
+        message = self.fail_with(1, "", "render", *CUMULUS, *TINY, "-o", "x.png", **NO_GRAPHICS)
+        self.assertIn("EGL", message)
+
+    def test_no_ffmpeg(self):
+        empty = self.folder / "bin"
+        empty.mkdir()
+        self.fail_with(1, "ffmpeg", "render", *CUMULUS, *TINY, "-o", "x.mp4", "--frames", "2", PATH=str(empty))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Commands that draw nothing: version, help, metar, sun, info."""
+import json
+
+from welkin_program import ProgramTest, main
+
+
+class Help(ProgramTest):
+    def test_version(self):
+        self.assertRegex(self.succeed("--version"), r"^welkin \d+\.\d+\.\d+\n$")
+
+    def test_help_lists_every_flag_of_render(self):
+        text = self.succeed("render", "--help")
+        for flag in ("--output", "--metar", "--place", "--time", "--at", "--seed", "--eye", "--look", "--projection", "--size",
+                     "--renderer", "--quality", "--spp", "--exposure", "--frames", "--fps", "--speed", "--report",
+                     "--threads", "--no-sun-disc", "--bits"):
+            self.assertIn(flag, text)
+        self.assertEqual(text, self.succeed("help", "render"))
+        self.assertIn("-90 to 90 deg", text)  # the range comes from the description of the parameter
+        self.assertLessEqual(max(map(len, text.splitlines())), 125)
+
+    def test_help_scene_names_every_key(self):
+        text = self.succeed("help", "scene")
+        for key in ("latitude_deg", "albedo", "genus", "oktas", "fov_deg", "exposure_ev", "[[layer]]", "[place]"):
+            self.assertIn(key, text)
+        self.assertIn("| `latitude_deg` | number | -90 to 90 | deg |", self.succeed("help", "scene", "--markdown"))
+
+    def test_mistakes_name_the_nearest(self):
+        self.fail_with(2, 'unknown command "rendr"; did you mean render?', "rendr")
+        self.fail_with(2, "unknown flag --exposre; did you mean --exposure?", "render", "-o", "x.png", "--exposre", "auto")
+        self.fail_with(2, "did you mean --version?", "--verison")
+        self.fail_with(2, 'there is no topic "scnee"; did you mean scene?', "help", "scnee")
+        self.fail_with(2, "expected a command")
+        self.fail_with(2, "--seed", "render", "-o", "x.png", "--seed")
+
+
+class Sun(ProgramTest):
+    def test_json(self):
+        j = json.loads(self.succeed("sun", "--place", "51.4779,0,46", "--time", "2026-06-21T12:00:00Z", "--json"))
+        # Greenwich at noon of the solstice: 90 - latitude + obliquity, near south (the equation of time is -1.9 minutes).
+        self.assertAlmostEqual(j["sun"]["elevation_deg"], 90 - 51.4779 + 23.436, delta=0.05)
+        self.assertAlmostEqual(j["sun"]["azimuth_deg"], 179, delta=1.0)
+        self.assertEqual(set(j["moon"]) >= {"azimuth_deg", "elevation_deg", "illuminated_fraction"}, True)
+        self.assertTrue(0 <= j["moon"]["illuminated_fraction"] <= 1)
+
+    def test_negative_places_and_offsets(self):
+        here = self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T12:00:00+10:00", "--json")
+        self.assertEqual(here, self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T02:00:00Z", "--json"))
+
+    def test_mistakes(self):
+        self.fail_with(2, "--place: latitude_deg is 95; expected -90 to 90 deg", "sun", "--place", "95,0", "--time",
+                       "2026-06-21T12:00:00Z")
+        self.fail_with(2, "--time", "sun", "--place", "1,2", "--time", "yesterday")
+        self.fail_with(2, "expected --place", "sun", "--time", "2026-06-21T12:00:00Z")
+
+
+class Metar(ProgramTest):
+    REPORT = "KMRY 211753Z 28010G20KT 10SM FEW012 BKN250 18/12 A2992"
+
+    def test_json(self):
+        j = json.loads(self.succeed("metar", "--json", self.REPORT))
+        self.assertEqual((j["station"], j["day"], j["hour"], j["minute"], j["auto"]), ("KMRY", 21, 17, 53, False))
+        self.assertEqual(j["wind"]["direction_deg"], 280)
+        self.assertAlmostEqual(j["wind"]["speed_mps"], 10 * 1852 / 3600, places=3)
+        self.assertAlmostEqual(j["wind"]["gust_mps"], 20 * 1852 / 3600, places=3)
+        self.assertEqual(j["layers"], [{"cover": "FEW", "base_ft": 1200, "type": None},
+                                       {"cover": "BKN", "base_ft": 25000, "type": None}])
+        self.assertAlmostEqual(j["pressure_hpa"], 29.92 * 33.8639, delta=0.1)
+        for key in ("visibility_m", "cavok", "clear", "vertical_visibility_ft", "weather", "temperature_c", "dewpoint_c"):
+            self.assertIn(key, j)
+
+    def test_several_and_from_a_file(self):
+        self.write("reports.txt", self.REPORT + "\n\n" + "LSZH 211220Z 24008KT CAVOK 22/12 Q1018\n")
+        lines = self.succeed("metar", "--json", "--file", "reports.txt").splitlines()
+        self.assertEqual([json.loads(line)["station"] for line in lines], ["KMRY", "LSZH"])
+
+    def test_empty_report(self):
+        done = self.run_program("metar", "--json", "")
+        self.assertEqual(done.returncode, 1)
+        j = json.loads(done.stdout)
+        self.assertTrue(j["error"])
+        self.assertEqual(j["report"], "")
+
+    def test_random_bytes(self):
+        import random
+        rng = random.Random(1)
+        for _ in range(20):
+            noise = bytes(rng.choice([b for b in range(1, 256) if b != 10]) for _ in range(rng.randrange(1, 80)))
+            done = self.run_program("metar", "--json", "--file", "-", stdin=b"X" + noise + b"\n")
+            self.assertEqual(done.returncode, 1, noise)
+            self.assertIn("error", json.loads(done.stdout), noise)
+
+    def test_mistakes(self):
+        self.fail_with(2, "metar: expected a report", "metar")
+        self.fail_with(1, "missing.txt", "metar", "--file", "missing.txt")
+
+
+class Info(ProgramTest):
+    def test_fills_in_what_is_left_out(self):
+        self.write("s.toml", '[[layer]]\ngenus = "cirrus"\n')
+        j = json.loads(self.succeed("info", "s.toml", "--json"))
+        self.assertEqual(j["layer"][0]["genus"], "cirrus")
+        self.assertGreater(j["layer"][0]["base_m"], 5000)
+        toml = self.succeed("info", "s.toml")
+        self.write("again.toml", toml)
+        self.assertEqual(self.succeed("info", "again.toml"), toml)
+
+    def test_mistakes(self):
+        self.fail_with(1, "missing.toml", "info", "missing.toml")
+        self.fail_with(2, "expected a name ending in .toml", "info", "x.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures: that they are there, say what they should, do not depend on threads, and that Ctrl-C leaves nothing."""
+import json
+import os
+import signal
+import struct
+import subprocess
+import time
+import zlib
+
+from welkin_program import CUMULUS, PROGRAM, TINY, ProgramTest, main
+
+
+def read_png(path):
+    """Width, height, bits a channel and the pixels' raw, filtered rows."""
+    data = path.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, chunks = 8, {}
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunks[kind] = chunks.get(kind, b"") + data[at + 8:at + 8 + length]
+        at += 12 + length
+    width, height, bits = struct.unpack(">IIB", chunks[b"IHDR"][:9])
+    return width, height, bits, zlib.decompress(chunks[b"IDAT"])
+
+
+class Stills(ProgramTest):
+    def test_png_of_8_and_16_bits(self):
+        self.succeed("render", *CUMULUS, *TINY, "-o", "a.png")
+        width, height, bits, rows = read_png(self.folder / "a.png")
+        self.assertEqual((width, height, bits), (96, 54, 8))
+        self.assertGreater(len(set(rows)), 40, "the picture has next to no content")
+        self.succeed("render", *CUMULUS, *TINY, "-o", "b.png", "--bits", "16")
+        self.assertEqual(read_png(self.folder / "b.png")[:3], (96, 54, 16))
+        self.assertEqual(self.files(), ["a.png", "b.png"])
+
+    def test_report(self):
+        self.succeed("render", *CUMULUS, *TINY, "-o", "a.exr", "--report", "r.json", "--seed", "5", "--at", "600")
+        r = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(r["seed"], 5)
+        self.assertEqual(r["renderer"], "gpu")
+        self.assertEqual(r["time"], "2026-06-21T12:30:00Z")
+        self.assertAlmostEqual(r["sun"]["elevation_deg"], 62.5, delta=3)
+        self.assertEqual(len(r["layers"]), 1)
+        layer = r["layers"][0]
+        self.assertEqual(layer["genus"], "cumulus")
+        self.assertAlmostEqual(layer["base_m"], 4000 * 0.3048, delta=1)
+        self.assertGreater(layer["top_m"], layer["base_m"])
+        for cover in (layer, r["sky_cover"]):
+            self.assertTrue(3 <= cover["requested_oktas"] <= 4, cover)  # SCT
+            self.assertTrue(0 < cover["delivered_oktas"] <= 8, cover)
+        self.assertTrue(r["passes"])
+        for p in r["passes"]:
+            self.assertGreaterEqual(p["ms"], 0)
+        self.assertGreater(r["total_ms"], 0)
+        self.assertGreater(r["peak_rss_mib"], 10)
+        self.assertLess(r["peak_rss_mib"], 1536)
+        self.assertEqual(r["scene"]["at_s"], 600)
+        for key in ("moon", "notes", "device", "metar", "heading_deg", "exposure_ev", "place"):
+            self.assertIn(key, r)
+        self.assertNotIn("frames", r)
+
+    def test_projections_have_their_sizes(self):
+        for projection, size in (("fisheye", "64x64"), ("equirect", "96x48"), ("cubemap", "96x16")):
+            self.succeed("render", *CUMULUS, "--quality", "low", "--size", size, "--projection", projection, "-o", "p.png")
+            self.assertEqual(read_png(self.folder / "p.png")[:2], tuple(map(int, size.split("x"))))
+
+    def test_scene_file_equals_flags(self):
+        self.write("s.toml", 'time = 2026-06-21T12:20:00Z\nseed = 3\nmetar = "%s"\n[place]\nlatitude_deg = 47.46\n'
+                   "longitude_deg = 8.55\naltitude_m = 430\n[output]\nwidth = 96\nheight = 54\nquality = \"low\"\n" % CUMULUS[1])
+        self.succeed("render", "s.toml", "-o", "file.exr")
+        self.succeed("render", *CUMULUS, *TINY, "--seed", "3", "-o", "flags.exr")
+        self.assertEqual((self.folder / "file.exr").read_bytes(), (self.folder / "flags.exr").read_bytes())
+
+
+class Determinism(ProgramTest):
+    def test_same_bytes_with_one_and_two_threads(self):
+        for name in ("x.png", "x.exr", "x.hdr"):
+            pictures = []
+            for threads in ("1", "2", "2"):
+                self.succeed("render", *CUMULUS, *TINY, "-o", name, "--threads", threads)
+                pictures.append((self.folder / name).read_bytes())
+            self.assertEqual(pictures[0], pictures[1], name + ": one and two threads differ")
+            self.assertEqual(pictures[1], pictures[2], name + ": two runs differ")
+
+    def test_seeds_differ(self):
+        for seed in ("1", "2"):
+            self.succeed("render", *CUMULUS, *TINY, "-o", seed + ".png", "--seed", seed)
+        self.assertNotEqual((self.folder / "1.png").read_bytes(), (self.folder / "2.png").read_bytes())
+
+
+class Frames(ProgramTest):
+    def test_each_frame_is_the_still_of_its_instant(self):
+        look = ["--look", "180,15"]
+        self.succeed("render", *CUMULUS, *TINY, *look, "-o", "f_%03d.png", "--frames", "3", "--fps", "2", "--speed", "120",
+                     "--report", "r.json")
+        self.assertEqual(self.files(), ["f_000.png", "f_001.png", "f_002.png", "r.json"])
+        self.succeed("render", *CUMULUS, *TINY, *look, "-o", "still.png", "--at", "120")
+        self.assertEqual((self.folder / "f_002.png").read_bytes(), (self.folder / "still.png").read_bytes())
+        frames = json.loads((self.folder / "r.json").read_text())["frames"]
+        self.assertEqual([f["time"] for f in frames],
+                         ["2026-06-21T12:20:00Z", "2026-06-21T12:21:00Z", "2026-06-21T12:22:00Z"])
+        self.assertEqual([f["path"] for f in frames], ["f_000.png", "f_001.png", "f_002.png"])
+
+
+class Interruption(ProgramTest):
+    def interrupt(self, seconds, *args, number=signal.SIGINT):
+        process = subprocess.Popen([PROGRAM, "render", *args], cwd=self.folder, stderr=subprocess.PIPE, start_new_session=True)
+        time.sleep(seconds)
+        self.assertIsNone(process.poll(), "finished before it could be interrupted")
+        os.killpg(process.pid, number)  # as a terminal does: children such as ffmpeg get it as well
+        _, stderr = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(stderr, b"welkin: interrupted\n")
+
+    def test_still(self):
+        self.interrupt(1.0, *CUMULUS, "--size", "1920x1080", "--quality", "ultra", "-o", "x.png", "--report", "r.json")
+        self.assertEqual(self.files(), [])
+
+    def test_an_older_picture_stays(self):
+        self.write("x.exr", "old")
+        self.interrupt(1.0, *CUMULUS, "--size", "1920x1080", "--quality", "ultra", "-o", "x.exr", number=signal.SIGTERM)
+        self.assertEqual(self.files(), ["x.exr"])
+        self.assertEqual((self.folder / "x.exr").read_text(), "old")
+
+    def test_video(self):
+        self.interrupt(4.0, *CUMULUS, *TINY, "-o", "x.mp4", "--frames", "100000")
+        self.assertEqual(self.files(), [])
+
+    def test_frames_are_whole(self):
+        self.interrupt(4.0, *CUMULUS, *TINY, "-o", "f_%06d.png", "--frames", "100000")
+        self.assertTrue(self.files())
+        for name in self.files():
+            self.assertEqual(read_png(self.folder / name)[:2], (96, 54))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "welkin/core/error.h"
+#include "welkin/scene/param_docs.h"
+#include "welkin/scene/param_json.h"
+
+namespace welkin::scene {
+namespace {
+
+struct Problem {
+  std::string what;
+  int line = 0, column = 0;
+};
+
+Problem problemOf(const std::string& text) {
+  try {
+    parseScene(text, "s.toml");
+  } catch (const ParseError& e) {
+    return {e.what(), e.line(), e.column()};
+  }
+  return {};
+}
+
+std::string readFile(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SceneFile, EmptyIsTheDefaultScene) {
+  EXPECT_EQ(toJson(parseScene("", "s.toml").scene), toJson(Scene{}));
+}
+
+TEST(SceneFile, ReadsEveryKindOfValue) {
+  const SceneFile f = parseScene(R"(
+time = 2026-03-20T18:00:30Z
+seed = 42
+metar = "KMRY 211753Z 28010KT 10SM FEW012 18/12 A2992"
+visibility_m = 9000
+[place]
+latitude_deg = 36.59
+longitude_deg = -121.85
+[ground]
+albedo = [0.1, 0, 1]
+[camera]
+projection = "equirect"
+heading_deg = 270
+[output]
+sun_disc = false
+width = 640
+)",
+                                 "s.toml");
+  const Scene& s = f.scene;
+  EXPECT_EQ(s.time, (UtcTime{2026, 3, 20, 18, 0, 30}));
+  EXPECT_EQ(s.seed, 42);
+  EXPECT_EQ(s.metar, "KMRY 211753Z 28010KT 10SM FEW012 18/12 A2992");
+  EXPECT_EQ(s.visibilityM, 9000.0);
+  EXPECT_EQ(s.place.longitudeDeg, -121.85);
+  EXPECT_EQ(s.ground.albedo, glm::dvec3(0.1, 0, 1));
+  EXPECT_EQ(s.camera.projection, Projection::kEquirect);
+  EXPECT_EQ(s.camera.headingDeg, 270.0);
+  EXPECT_FALSE(s.output.sunDisc);
+  EXPECT_EQ(s.output.width, 640);
+  EXPECT_EQ(s.output.height, Output{}.height);
+  EXPECT_TRUE(f.gives("output.width"));
+  EXPECT_FALSE(f.gives("output.height"));
+}
+
+TEST(SceneFile, TimeMayHaveAnOffsetOrBeText) {
+  EXPECT_EQ(parseScene("time = 2026-03-20T18:00:00+02:00", "s").scene.time, (UtcTime{2026, 3, 20, 16, 0, 0}));
+  EXPECT_EQ(parseScene("time = \"2026-03-20T18:00Z\"", "s").scene.time, (UtcTime{2026, 3, 20, 18, 0, 0}));
+}
+
+TEST(SceneFile, RoundTrips) {
+  Scene s;
+  s.time = {2031, 12, 24, 23, 59, 58.25};
+  s.atS = -12.5;
+  s.metar = "text with \"quotes\", a tab\t and a backslash \\";
+  s.visibilityM = 12345.678;
+  s.ground.albedo = {1.0 / 3.0, 0.2, 0.0};
+  s.camera.headingDeg = 359.99;
+  s.output.quality = Quality::kUltra;
+  s.output.exposureEv = -3;
+  s.layers.resize(3);
+  s.layers[0].genus = weather::Genus::kFog;
+  s.layers[1].baseM = 2345.6;
+  s.layers[1].topM = 2400;
+  s.layers[2].genus = weather::Genus::kCirrus;
+  const std::string text = sceneToToml(s);
+  const Scene back = parseScene(text, "s.toml").scene;
+  EXPECT_EQ(toJson(back), toJson(s)) << text;
+  EXPECT_EQ(sceneToToml(back), text);
+}
+
+TEST(SceneFile, UnknownKeysNameTheNearestAndThePlace) {
+  const Problem p = problemOf("seed = 1\n[place]\n  latitude_dge = 4\n");
+  EXPECT_EQ(p.what, "s.toml:3:3: unknown key \"latitude_dge\" in [place]; did you mean \"latitude_deg\"?");
+  EXPECT_EQ(p.line, 3);
+  EXPECT_EQ(p.column, 3);
+  EXPECT_EQ(problemOf("tiem = 1").what, "s.toml:1:1: unknown key \"tiem\"; did you mean \"time\"?");
+  EXPECT_EQ(problemOf("[camrea]\nfov_deg = 3").what,
+            "s.toml:1:2: unknown key \"camrea\"; did you mean \"camera\"?");
+  EXPECT_EQ(problemOf("latitude_deg = 3").what,
+            "s.toml:1:1: unknown key \"latitude_deg\"; it belongs in [place]");
+  EXPECT_EQ(
+      problemOf("[output]\nseed = 3").what,
+      "s.toml:2:1: unknown key \"seed\" in [output]; it belongs at the top of the file, above every [table]");
+  EXPECT_EQ(problemOf("[[layer]]\ngenus = \"cirrus\"\nokats = 3").what,
+            "s.toml:3:1: unknown key \"okats\" in [[layer]]; did you mean \"oktas\"?");
+}
+
+TEST(SceneFile, WrongTypesSayExpectedAndFound) {
+  EXPECT_EQ(problemOf("[place]\nlatitude_deg = \"north\"").what,
+            "s.toml:2:16: latitude_deg: expected a number, found text");
+  EXPECT_EQ(problemOf("seed = 1.5").what, "s.toml:1:8: seed: expected a whole number, found a number");
+  EXPECT_EQ(problemOf("seed = true").what, "s.toml:1:8: seed: expected a whole number, found true or false");
+  EXPECT_EQ(problemOf("metar = 3").what, "s.toml:1:9: metar: expected text, found a whole number");
+  EXPECT_EQ(problemOf("output = 3").what,
+            "s.toml:1:10: output: expected a table [output], found a whole number");
+  EXPECT_EQ(problemOf("[layer]\noktas = 3").what,
+            "s.toml:1:1: layer: expected a list of tables [[layer]], found a table");
+  EXPECT_EQ(problemOf("layer = [1]").what,
+            "s.toml:1:10: layer: expected a list of tables [[layer]], found a whole number");
+  EXPECT_EQ(problemOf("[ground]\nalbedo = [0.1, 0.2]").what,
+            "s.toml:2:10: albedo: expected a list of three numbers, found a list");
+  EXPECT_EQ(problemOf("time = 5").what,
+            "s.toml:1:8: time: expected a date and time such as 2026-06-21T18:30:00Z, found a whole number");
+  EXPECT_EQ(problemOf("[output]\nsun_disc = 1").what,
+            "s.toml:2:12: sun_disc: expected true or false, found a whole number");
+}
+
+TEST(SceneFile, ValuesOutOfRangeNameTheRange) {
+  EXPECT_EQ(problemOf("[place]\nlatitude_deg = 95").what,
+            "s.toml:2:16: latitude_deg is 95; expected -90 to 90 deg");
+  EXPECT_EQ(problemOf("[output]\nwidth = 0").what, "s.toml:2:9: width is 0; expected 1 to 16384 pixels");
+  EXPECT_EQ(problemOf("[camera]\nfov_deg = nan").what, "s.toml:2:11: fov_deg is nan; expected 1 to 170 deg");
+  EXPECT_EQ(problemOf("[camera]\nfov_deg = -inf").what,
+            "s.toml:2:11: fov_deg is -inf; expected 1 to 170 deg");
+  EXPECT_EQ(problemOf("[ground]\nalbedo = [0.1, 1.5, 0]").what,
+            "s.toml:2:16: albedo is 1.5; expected 0 to 1");
+  EXPECT_EQ(problemOf("[output]\nquality = \"hihg\"").what,
+            "s.toml:2:11: quality is \"hihg\"; expected low, medium, high or ultra; did you mean high?");
+  EXPECT_EQ(problemOf("time = \"2026-13-01T00:00:00Z\"").line, 1);
+}
+
+TEST(SceneFile, BadTomlHasAPosition) {
+  for (const char* text : {"seed = ", "seed = 1\nseed = 2", "[place", "x = \"open",
+                           "time = 2026-02-30T00:00:00Z", "\xff\xfe", "= 1", "[[layer]]\n[layer]"}) {
+    const Problem p = problemOf(text);
+    EXPECT_TRUE(p.what.starts_with("s.toml:")) << text << " -> " << p.what;
+    EXPECT_GT(p.line, 0) << text;
+  }
+  EXPECT_EQ(problemOf("seed = 1\nplace = {").line, 2);
+}
+
+TEST(SceneFile, LayersTakeWhatIsTypicalOfTheirGenus) {
+  const Scene s = parseScene(R"(
+[place]
+latitude_deg = 10
+[[layer]]
+genus = "cirrus"
+oktas = 3
+[[layer]]
+genus = "stratus"
+base_m = 500
+[[layer]]
+genus = "cumulus"
+base_m = 900
+top_m = 1000
+)",
+                             "s.toml")
+                      .scene;
+  ASSERT_EQ(s.layers.size(), 3u);
+  weather::Layer cirrus = weather::typicalLayer(weather::Genus::kCirrus, 10);
+  EXPECT_EQ(s.layers[0].baseM, cirrus.baseM);
+  EXPECT_EQ(s.layers[0].topM, cirrus.topM);
+  EXPECT_EQ(s.layers[0].oktas, 3);
+  const weather::Layer stratus = weather::typicalLayer(weather::Genus::kStratus, 10);
+  EXPECT_EQ(s.layers[1].baseM, 500);
+  EXPECT_DOUBLE_EQ(s.layers[1].topM, 500 + stratus.topM - stratus.baseM);
+  EXPECT_EQ(s.layers[1].oktas, stratus.oktas);
+  EXPECT_EQ(s.layers[2].topM, 1000);
+  // Another latitude given from outside wins over the file's.
+  const Scene polar =
+      parseScene("[place]\nlatitude_deg = 10\n[[layer]]\ngenus = \"cirrus\"", "s", 80.0).scene;
+  EXPECT_EQ(polar.layers[0].baseM, weather::typicalLayer(weather::Genus::kCirrus, 80).baseM);
+}
+
+TEST(SceneFile, MissingFilesAndFoldersAreIoErrors) {
+  EXPECT_THROW(readSceneFile("/nonexistent/scene.toml"), IoError);
+  EXPECT_THROW(readSceneFile(std::filesystem::temp_directory_path().string()), IoError);
+}
+
+TEST(SceneFile, ExamplesAreValid) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(WELKIN_SOURCE_DIR "/examples")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    EXPECT_NO_THROW(validate(readSceneFile(entry.path().string()).scene)) << entry.path();
+  }
+  EXPECT_GE(count, 3);
+}
+
+// docs/scene_file.md holds what `welkin help scene --markdown` prints.
+TEST(SceneFile, DocumentationIsUpToDate) {
+  const std::string doc = readFile(WELKIN_SOURCE_DIR "/docs/scene_file.md");
+  EXPECT_NE(doc.find(markdownTable(documentParams<Scene>())), std::string::npos)
+      << "replace the tables in docs/scene_file.md by the output of `welkin help scene --markdown`";
+}
+
+// The TOML example inside the documentation is read as well.
+TEST(SceneFile, ExampleInTheDocumentationIsValid) {
+  const std::string doc = readFile(WELKIN_SOURCE_DIR "/docs/scene_file.md");
+  const std::size_t begin = doc.find("```toml\n");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = doc.find("```", begin + 8);
+  EXPECT_NO_THROW(validate(parseScene(doc.substr(begin + 8, end - begin - 8), "docs").scene));
+}
+
+}  // namespace
+}  // namespace welkin::scene

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of described parameters as text: reading one (a flag of the command line, a value typed into a
+// panel), and the sentences that say what is wrong with one. Scene files use the same sentences, so that a
+// mistake reads the same wherever it is made.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "welkin/core/params.h"
+
+namespace welkin::scene {
+
+// The shortest text that reads back as the same number: "0.1", "40000", "1e-09".
+std::string numberText(double x);
+
+// "-90 to 90 deg", "at least 0", or empty when everything is allowed.
+std::string rangeText(const ParamInfo& info);
+
+// Empty, or what is wrong with the number: "latitude_deg is 95; expected -90 to 90 deg". NaN and infinities
+// are never allowed.
+std::string rangeProblem(const ParamInfo& info, double x);
+
+// What is wrong with a name that is none of the choices, with the nearest one when there is one.
+std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,
+                          std::string_view found);
+
+// Sets the parameter at `path` ("seed", "place.latitude_deg") from text. Numbers are decimal; vectors are
+// "x,y,z"; optional parameters take "auto" for absent. Throws ParameterError, what() being the sentence of
+// what is wrong; where the text stood is for the caller to add. The path must exist.
+template <class T>
+void setParam(T& params, std::string_view path, std::string_view text);
+
+namespace detail {
+
+class TextSetter final : public ParamVisitor {
+ public:
+  TextSetter(std::string_view path, std::string_view text) : rest_(path), text_(text) {}
+  bool found() const { return found_; }
+
+  void value(const ParamInfo& info, bool& x) override;
+  void value(const ParamInfo& info, std::int64_t& x) override;
+  void value(const ParamInfo& info, double& x) override;
+  void value(const ParamInfo& info, glm::dvec3& x) override;
+  void value(const ParamInfo& info, std::string& x) override;
+  void value(const ParamInfo& info, UtcTime& x) override;
+  void value(const ParamInfo& info, std::optional<double>& x) override;
+  void value(const ParamInfo& info, std::optional<std::string>& x) override;
+  void choice(const ParamInfo& info, std::span<const std::string_view> names, int& x) override;
+
+ protected:
+  bool beginGroup(const ParamInfo& info) override;
+  void endGroup() override;
+  std::size_t beginList(const ParamInfo&, std::size_t size) override;
+  void beginElement(std::size_t) override { ++depthInList_; }
+  void endElement() override { --depthInList_; }
+  void endList() override {}
+
+ private:
+  bool isTarget(const ParamInfo& info);
+  std::string_view rest_;  // what of the path is still to be met
+  std::string_view text_;
+  int depthInList_ = 0;  // elements of lists have no path
+  bool found_ = false;
+};
+
+void requireFound(bool found, std::string_view path);
+
+}  // namespace detail
+
+template <class T>
+void setParam(T& params, std::string_view path, std::string_view text) {
+  detail::TextSetter setter(path, text);
+  describe(params, setter);
+  detail::requireFound(setter.found(), path);
+}
+
+}  // namespace welkin::scene

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/scene.h"
+
+#include <string>
+
+#include "welkin/core/error.h"
+
+namespace welkin::scene {
+namespace {
+
+// Together the two limits keep a picture of floats under 2 GiB.
+constexpr double kMaxSide = 16384;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
+constexpr double kYearS = 366.0 * 86400.0;
+
+}  // namespace
+
+void describe(Place& p, ParamVisitor& v) {
+  v.value({"latitude_deg", "deg", "geodetic latitude, north positive", -90, 90}, p.latitudeDeg);
+  v.value({"longitude_deg", "deg", "longitude, east positive", -180, 180}, p.longitudeDeg);
+  v.value({"altitude_m", "m", "height of the ground above mean sea level", -500, 9000}, p.altitudeM);
+}
+
+void describe(Camera& c, ParamVisitor& v) {
+  v.value({"eye_m", "m", "height of the eye above the ground", 0.1, 20000}, c.eyeM);
+  v.value({"heading_deg", "deg",
+           "direction of view clockwise from north; absent: 60 deg right of the brighter of sun and moon, "
+           "north for "
+           "projections of the whole sky",
+           -360, 360},
+          c.headingDeg);
+  v.value({"pitch_deg", "deg", "direction of view above the horizon", -90, 90}, c.pitchDeg);
+  v.value({"fov_deg", "deg", "field of view across the width of a perspective picture", 1, 170}, c.fovDeg);
+  v.choice(
+      {"projection", "",
+       "perspective; fisheye: the whole dome, zenith in the middle, heading at the bottom; equirect: all "
+       "directions, 2:1, heading in the middle; cubemap: six faces side by side, +x -x +y -y +z -z in "
+       "east-north-up, whatever the heading"},
+      c.projection);
+}
+
+void describe(Output& o, ParamVisitor& v) {
+  v.value({"width", "pixels", "width of the picture; width times height is at most 134217728", 1, kMaxSide},
+          o.width);
+  v.value({"height", "pixels", "height of the picture", 1, kMaxSide}, o.height);
+  v.choice({"quality", "", "how finely the clouds are marched"}, o.quality);
+  v.value({"exposure_ev", "EV",
+           "exposure value at ISO 100 of PNG and video; absent: automatic, from each picture", -16, 24},
+          o.exposureEv);
+  v.value(
+      {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
+      o.sunDisc);
+  v.value({"frames", "", "number of pictures in a sequence or video", 1, 1000000}, o.frames);
+  v.value({"fps", "1/s", "frames for each second of video", 0.1, 1000}, o.fps);
+  v.value({"speed", "", "simulated seconds for each second of video; negative runs backwards", -86400, 86400},
+          o.speed);
+}
+
+void describe(Ground& g, ParamVisitor& v) {
+  v.value({"albedo", "", "reflectance of the ground, linear Rec. 709 red, green, blue", 0, 1}, g.albedo);
+}
+
+void describe(Scene& s, ParamVisitor& v) {
+  v.value({"time", "UTC", "the moment at which the weather is as described, ISO 8601"}, s.time);
+  v.value({"at_s", "s", "how long after `time` the (first) picture is taken", -kYearS, kYearS}, s.atS);
+  v.value({"seed", "", "chooses one of many skies of the same weather", 0, 9007199254740991.0}, s.seed);
+  v.value({"metar", "",
+           "the weather as a METAR report; wins over every [[layer]]; absent: the weather is by hand"},
+          s.metar);
+  v.value({"visibility_m", "m",
+           "meteorological optical range at the ground; absent: from the report, else 40 km", 10, 300000},
+          s.visibilityM);
+  v.group({"place", "", "where on earth the eye stands"}, s.place);
+  v.group({"camera", "", "where the eye is and what it sees"}, s.camera);
+  v.group({"output", "", "the picture"}, s.output);
+  v.group({"ground", "", "the ground below"}, s.ground);
+  v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
+  v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
+}
+
+void validate(const Scene& s) {
+  const std::int64_t w = s.output.width, h = s.output.height;
+  const std::string size = std::to_string(w) + "x" + std::to_string(h);
+  if (w * h > kMaxPixels)
+    throw ParameterError("size " + size + " has " + std::to_string(w * h) + " pixels; expected at most " +
+                         std::to_string(kMaxPixels));
+  if (s.camera.projection == Projection::kCubemap && w != 6 * h)
+    throw ParameterError("size " + size +
+                         " does not fit a cubemap; expected six square faces side by side, " +
+                         std::to_string(6 * h) + "x" + std::to_string(h) + " for instance");
+  for (std::size_t i = 0; i < s.layers.size(); ++i) {
+    const weather::Layer& l = s.layers[i];
+    if (!(l.topM > l.baseM))
+      throw ParameterError("layer " + std::to_string(i + 1) + ": top_m is not above base_m");
+  }
+}
+
+PictureSize naturalSize(Projection projection) {
+  switch (projection) {
+    case Projection::kFisheye:
+      return {1024, 1024};
+    case Projection::kEquirect:
+      return {2048, 1024};
+    case Projection::kCubemap:
+      return {3072, 512};
+    case Projection::kPerspective:
+      break;
+  }
+  return {1280, 720};
+}
+
+}  // namespace welkin::scene

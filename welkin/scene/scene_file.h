@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene files: a Scene as TOML (https://toml.io, version 1.0). Keys, units and ranges are those of the
+// descriptions in scene.h, weather.h and atmosphere_params.h; docs/scene_file.md lists them.
+//
+// What a file leaves out keeps its default. A [[layer]] may name only its genus: the rest is
+// weather::typicalLayer() for the latitude of the place; one that moves base_m but not top_m keeps the
+// typical thickness.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "welkin/scene/scene.h"
+
+namespace welkin::scene {
+
+struct SceneFile {
+  Scene scene;
+  std::vector<std::string> given;  // paths of the parameters that the file names: "seed", "output.width"
+
+  bool gives(std::string_view path) const;
+};
+
+// latitudeDeg: of the place when something else than the file decides it, for what is typical of a layer
+// there. Throws IoError when the file cannot be read; ParseError with file:line:column for bad TOML, an
+// unknown key (naming the nearest known one), a value of the wrong type and a value outside its range.
+// validate() is left to the caller.
+SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg = {});
+
+// The same from memory; `name` stands for the file in messages.
+SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {});
+
+// A scene file that reads back as the same scene; every key is written but those that are absent.
+std::string sceneToToml(const Scene& scene);
+
+}  // namespace welkin::scene
