@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/shading/shader_library.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "welkin/core/error.h"
+#include "welkin/gpu/context.h"
+#include "welkin/gpu/program.h"
+
+namespace welkin::shading {
+namespace {
+
+std::size_t count(std::string_view text, std::string_view what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string_view::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+// A shaders/ folder on disk that assembleShader reads while the object lives.
+class DiskShaders {
+ public:
+  DiskShaders() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "welkin-shaders-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    std::filesystem::create_directories(folder_ / "lib");
+    std::filesystem::create_directories(folder_ / "pass");
+    write("lib/prelude.glsl", "precision highp float;\n");
+    setenv("WELKIN_SHADER_DIR", folder_.c_str(), 1);
+  }
+  ~DiskShaders() {
+    unsetenv("WELKIN_SHADER_DIR");
+    std::filesystem::remove_all(folder_);
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+std::string messageOf(std::string_view name) {
+  try {
+    assembleShader(name, ShaderDialect::kGl330);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ShaderLibrary, BeginsWithTheVersionOfEachDialect) {
+  EXPECT_TRUE(
+      assembleShader("pass/fullscreen.vert", ShaderDialect::kGl330).text.starts_with("#version 330 core\n"));
+  EXPECT_TRUE(
+      assembleShader("pass/fullscreen.vert", ShaderDialect::kEs300).text.starts_with("#version 300 es\n"));
+  EXPECT_TRUE(assembleShader("pass/fullscreen.vert", ShaderDialect::kGl430Compute)
+                  .text.starts_with("#version 430 core\n"));
+}
+
+TEST(ShaderLibrary, EmbeddedFilesAreThoseOfTheSourceFolder) {
+  const std::vector<std::string> embedded = shaderNames();
+  setenv("WELKIN_SHADER_DIR", WELKIN_TEST_DATA_DIR "/../../shaders", 1);
+  const std::vector<std::string> onDisk = shaderNames();
+  unsetenv("WELKIN_SHADER_DIR");
+  EXPECT_EQ(embedded, onDisk);
+  EXPECT_NE(std::find(embedded.begin(), embedded.end(), "lib/prelude.glsl"), embedded.end());
+}
+
+TEST(ShaderLibrary, IncludesEachFileOnceAndInOrder) {
+  const DiskShaders disk;
+  disk.write("lib/a.glsl", "#include \"lib/c.glsl\"\nint a;\n");
+  disk.write("lib/b.glsl", "  #  include \"lib/c.glsl\"\nint b;");  // no newline at its end
+  disk.write("lib/c.glsl", "#include \"lib/a.glsl\"\nint c;\n");    // a circle
+  disk.write(
+      "pass/x.frag",
+      "#include \"lib/a.glsl\"\n#include \"lib/b.glsl\"\n// #include \"lib/none.glsl\"\nvoid main() {}\n");
+  const ShaderSource source = assembleShader("pass/x.frag", ShaderDialect::kGl330);
+  EXPECT_EQ(count(source.text, "int a;"), 1u);
+  EXPECT_EQ(count(source.text, "int b;"), 1u);
+  EXPECT_EQ(count(source.text, "int c;"), 1u);
+  EXPECT_LT(source.text.find("int c;"), source.text.find("int a;"));
+  EXPECT_LT(source.text.find("int a;"), source.text.find("int b;"));
+  EXPECT_EQ(source.files, (std::vector<std::string>{"pass/x.frag", "lib/prelude.glsl", "lib/a.glsl",
+                                                    "lib/c.glsl", "lib/b.glsl"}));
+}
+
+TEST(ShaderLibrary, DefinesStandBetweenPreludeAndShader) {
+  const ShaderDefine defines[] = {{"STEPS", "64"}, {"FAST", ""}};
+  const std::string text = assembleShader("pass/fullscreen.vert", ShaderDialect::kGl330, defines).text;
+  EXPECT_LT(text.find("precision highp float"), text.find("#define STEPS 64\n"));
+  EXPECT_LT(text.find("#define FAST"), text.find("void main"));
+}
+
+TEST(ShaderLibrary, UnknownIncludeNamesFileAndLine) {
+  const DiskShaders disk;
+  disk.write("lib/phase.glsl", "int p;\n");
+  disk.write("lib/a.glsl", "int a;\n\n#include \"lib/phasse.glsl\"\n");
+  disk.write("pass/x.frag", "#include \"lib/a.glsl\"\nvoid main() {}\n");
+  disk.write("pass/y.frag", "#include <lib/a.glsl>\nvoid main() {}\n");
+  EXPECT_EQ(messageOf("pass/x.frag"),
+            "lib/a.glsl:3: there is no shader file \"lib/phasse.glsl\"; is \"lib/phase.glsl\" meant?");
+  EXPECT_EQ(messageOf("pass/y.frag"), "pass/y.frag:1: expected #include \"lib/name.glsl\"");
+}
+
+TEST(ShaderLibrary, UnknownEntryPointSuggestsTheNearest) {
+  EXPECT_EQ(messageOf("pass/fulscreen.vert"),
+            "there is no shader file \"pass/fulscreen.vert\"; is \"pass/fullscreen.vert\" meant?");
+}
+
+TEST(ShaderLibrary, MissingFolderIsAnError) {
+  setenv("WELKIN_SHADER_DIR", "/nonexistent", 1);
+  EXPECT_THROW(assembleShader("pass/fullscreen.vert", ShaderDialect::kGl330), IoError);
+  unsetenv("WELKIN_SHADER_DIR");
+}
+
+// The line that a compiler names is the line of the file, before, between and after includes, in both
+// dialects.
+TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
+  const DiskShaders disk;
+  disk.write("lib/good.glsl", "float two() {\n  return 2.0f;\n}\n");
+  disk.write("lib/bad.glsl", "float three() {\n\n  return threee;\n}\n");
+  disk.write("pass/v.vert", "void main() { gl_Position = vec4(0.0f); }\n");
+  disk.write("pass/in_include.frag",
+             "#include \"lib/good.glsl\"\n#include \"lib/bad.glsl\"\nout vec4 c;\nvoid main() { c = "
+             "vec4(two()); }\n");
+  disk.write("pass/after.frag",
+             "#include \"lib/good.glsl\"\nout vec4 c;\nvoid main() {\n  c = vec4(twoo());\n}\n");
+  for (const bool es : {false, true}) {
+    gpu::Context context({.api = es ? gpu::Api::kGles : gpu::Api::kGl});
+    const ShaderDialect dialect = es ? ShaderDialect::kEs300 : ShaderDialect::kGl330;
+    const auto message = [&](const char* name) -> std::string {
+      try {
+        gpu::Program::graphics(assembleShader("pass/v.vert", dialect), assembleShader(name, dialect));
+      } catch (const GpuError& error) {
+        return error.what();
+      }
+      return "compiled";
+    };
+    EXPECT_NE(message("pass/in_include.frag").find("lib/bad.glsl:3"), std::string::npos)
+        << message("pass/in_include.frag");
+    EXPECT_NE(message("pass/after.frag").find("pass/after.frag:4"), std::string::npos)
+        << message("pass/after.frag");
+  }
+}
+
+// Every entry point compiles for the desktop, and all but compute for the web as well, where drivers of
+// desktops are laxer.
+TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
+  for (const bool es : {false, true}) {
+    gpu::Context context({.api = es ? gpu::Api::kGles : gpu::Api::kGl, .debug = true});
+    const ShaderDialect dialect = es ? ShaderDialect::kEs300 : ShaderDialect::kGl330;
+    const ShaderSource triangle = assembleShader("pass/fullscreen.vert", dialect);
+    const ShaderSource nothing{
+        std::string(es ? "#version 300 es" : "#version 330 core") + "\nvoid main() {}\n", {"-"}};
+    for (const std::string& name : shaderNames()) {
+      SCOPED_TRACE(name + (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
+      if (name.ends_with(".frag")) {
+        EXPECT_NO_THROW(gpu::Program::graphics(triangle, assembleShader(name, dialect)));
+      } else if (name.ends_with(".vert")) {
+        EXPECT_NO_THROW(gpu::Program::graphics(assembleShader(name, dialect), nothing));
+      } else if (name.ends_with(".comp") && !es && context.hasCompute()) {
+        EXPECT_NO_THROW(gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute)));
+      }
+    }
+    EXPECT_TRUE(context.takeErrors().empty());
+  }
+}
+
+}  // namespace
+}  // namespace welkin::shading

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Running programs: over all pixels of a target, over a tile of it, or as compute work; and waiting for them.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "welkin/gpu/framebuffer.h"
+#include "welkin/gpu/program.h"
+#include "welkin/gpu/texture.h"
+
+namespace welkin::gpu {
+
+// A rectangle of pixels with the origin at the bottom left, as gl_FragCoord counts.
+struct Tile {
+  int x = 0, y = 0;
+  int width = 0, height = 0;
+};
+
+enum class Blend {
+  kReplace,
+  kAdd,  // onto what is there: accumulation, into a 32-bit float target
+};
+
+struct DrawOptions {
+  std::optional<Tile> tile;  // absent: the whole target
+  Blend blend = Blend::kReplace;
+};
+
+// Draws the triangle of shaders/pass/fullscreen.vert. Depth test, culling and all else are as in a fresh
+// context.
+class FullscreenTriangle {
+ public:
+  FullscreenTriangle();
+  ~FullscreenTriangle();
+  FullscreenTriangle(const FullscreenTriangle&) = delete;
+  FullscreenTriangle& operator=(const FullscreenTriangle&) = delete;
+
+  // Binds the target and runs the program over it. Textures are bound already, see Program::bind.
+  void draw(const Program& program, const Framebuffer& target, const DrawOptions& options = {}) const;
+
+ private:
+  unsigned vertexArray_ = 0;  // empty, but core profiles want one
+};
+
+// Compute, where Context::hasCompute().
+enum class Access { kRead, kWrite, kReadWrite };
+// `layout(binding = unit)` of an image uniform; volumes are bound whole.
+void bindImage(int unit, const Texture& texture, Access access);
+// Runs groups of work items and makes what they write visible to everything after.
+void dispatch(const Program& program, int groupsX, int groupsY, int groupsZ = 1);
+
+// Sends all work to the device; it starts even if nobody waits.
+void flush();
+// Waits until the device has done all work.
+void finish();
+
+// Wall-clock time of GPU work. GL's timer queries measure submission, not work, on software rasterisers.
+class Stopwatch {
+ public:
+  Stopwatch();          // waits for work before it, then starts
+  double finishedMs();  // waits for the device; milliseconds since the start or the last call
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace welkin::gpu

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Somewhere to draw to: colour attachments that are textures or slices of a volume, all of one size.
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include "welkin/core/image.h"
+#include "welkin/gpu/texture.h"
+
+namespace welkin::gpu {
+
+class Framebuffer {
+ public:
+  static constexpr int kMaxAttachments = 4;
+
+  Framebuffer();
+  explicit Framebuffer(const Texture2D& colour);  // the texture as attachment 0
+  ~Framebuffer();
+  Framebuffer(const Framebuffer&) = delete;
+  Framebuffer& operator=(const Framebuffer&) = delete;
+  Framebuffer(Framebuffer&& other) noexcept;
+  Framebuffer& operator=(Framebuffer&& other) noexcept;
+
+  // Fragment output `index` (0 to 3) goes to this texture, or to slice z of this volume. The texture must
+  // outlive the use.
+  void attach(int index, const Texture2D& texture);
+  void attachSlice(int index, const Texture3D& volume, int z);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // Makes it the target of draws, over its whole size. Throws GpuError if the device cannot draw to it.
+  void bind() const;
+  // Fills an attachment with one value. Binds.
+  void clear(int index = 0, const glm::vec4& value = glm::vec4(0.0f)) const;
+
+  // An attachment as a picture, top row first: fragments of the highest gl_FragCoord.y come first. Waits for
+  // the device. Binds.
+  Image<float> readPicture(int index = 0, int channels = 4) const;
+
+ private:
+  void attached(int index, int width, int height);
+
+  unsigned id_ = 0;
+  int width_ = 0, height_ = 0;
+  unsigned used_ = 0;  // bit i: attachment i is there
+};
+
+}  // namespace welkin::gpu
