@@ -34,7 +34,7 @@ struct Atmosphere {
   vec3 aerosolExtinction;      // 1/m at the ground
   vec3 aerosolScattering;      // 1/m at the ground
   float aerosolScaleHeightM;
-  float aerosolG;              // mean cosine of the Henyey-Greenstein phase function
+  float aerosolG;              // mean cosine of phaseHaze()
   vec3 ozoneAbsorption;        // 1/m at the layer's peak
   float ozoneAltitudeM;        // of the peak; the profile is a tent
   float ozoneHalfWidthM;
@@ -197,7 +197,7 @@ WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, f
   float tEnd = tGround >= 0.0f ? tGround : atmosphereDistanceToSphere(a, h, dir.z, a.topAltitudeM);
   float c = dot(dir, lightDir);
   float rayleighPhase = phaseRayleigh(c);
-  float aerosolPhase = phaseHenyeyGreenstein(c, a.aerosolG);
+  float aerosolPhase = phaseHaze(c, a.aerosolG);
   vec3 through = vec3(1.0f);
   single = vec3(0.0f);
   gathered = vec3(0.0f);
@@ -257,13 +257,13 @@ WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler
     float c = dot(dir, lights.direction0);
     float muLight = (r * lights.direction0.z + t * c) / (a.seaRadiusM + along);
     source += lights.illuminance0 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
-                                                     phaseHenyeyGreenstein(c, a.aerosolG));
+                                                     phaseHaze(c, a.aerosolG));
   }
   if (lights.illuminance1.y > 0.0f) {
     float c = dot(dir, lights.direction1);
     float muLight = (r * lights.direction1.z + t * c) / (a.seaRadiusM + along);
     source += lights.illuminance1 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
-                                                     phaseHenyeyGreenstein(c, a.aerosolG));
+                                                     phaseHaze(c, a.aerosolG));
   }
   vec3 stepThrough = exp(-m.extinction * (t1 - t0));
   inscatter += transmittance * source * (vec3(1.0f) - stepThrough) / max(m.extinction, vec3(1e-20f));
@@ -271,12 +271,15 @@ WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler
 }
 
 // Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
-// the total amount of starlight". Seen through the air beneath.
+// the total amount of starlight". What the air takes from the straight ray it partly gives back from the rest of the dome, more so over
+// bright ground: between half (black ground) and all (white) of the dome's luminance, as from any conservative slab under a uniform sky.
 WELKIN_FN vec3 atmosphereAirglow(Atmosphere a, sampler2D transmittanceLut, float h, float mu) {
   if (h >= a.airglowAltitudeM) return vec3(0.0f);
   float q = (a.seaRadiusM + h) / (a.seaRadiusM + a.airglowAltitudeM);
   float vanRhijn = 1.0f / sqrt(max(1.0f - q * q * (1.0f - mu * mu), 1e-4f));
-  return a.airglow * vanRhijn * atmosphereTransmittance(a, transmittanceLut, h, mu);
+  vec3 through = atmosphereTransmittance(a, transmittanceLut, h, mu);
+  vec3 back = 0.5f * (vec3(1.0f) + a.groundAlbedo);
+  return a.airglow * (vanRhijn * through + back * (vec3(1.0f) - through));
 }
 
 // Luminance of the clear sky along dir; down to the ground where the ray meets it, without the ground's own. No discs.

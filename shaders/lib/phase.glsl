@@ -31,6 +31,16 @@ WELKIN_FN float draineMeanCosine(float g, float alpha) {
 // g is the parameter; the mean cosine is a little larger in magnitude: draineMeanCosine(g, 1).
 WELKIN_FN float phaseCornetteShanks(float c, float g) { return phaseDraine(c, g, 1.0f); }
 
+// Haze with mean cosine g, up to 0.9: not quite half of the light goes into the narrow peak of coarse particles, which makes the sun's
+// aureole; the rest, by fine ones, sidewards. Two Henyey-Greenstein lobes as G. W. Kattawar 1975, "A three-parameter analytic phase function
+// for multiple scattering calculations".
+WELKIN_CONST float kHazePeakG = 0.85f;
+WELKIN_CONST float kHazePeakWeight = 0.45f;
+WELKIN_FN float phaseHaze(float c, float g) {
+  float fine = (g - kHazePeakWeight * kHazePeakG) / (1.0f - kHazePeakWeight);
+  return mix(phaseHenyeyGreenstein(c, fine), phaseHenyeyGreenstein(c, kHazePeakG), kHazePeakWeight);
+}
+
 // The parameters of the droplet phase function below.
 struct DropletPhase {
   float gHg;      // Henyey-Greenstein lobe: the narrow forward peak

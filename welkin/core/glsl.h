@@ -86,6 +86,17 @@ inline vec4 load(const float* p, int channels) {
 inline vec4 textureLod(const sampler2D& s, vec2 uv, float) {
   const Image<float>& im = *s.image;
   const detail::Tap tx = detail::tap(uv.x, im.width, s.wrapX), ty = detail::tap(uv.y, im.height, s.wrapY);
+  if (im.channels == 3) {  // the atmosphere's tables
+    const float* p = im.data.data();
+    const float *a = p + im.index(tx.i0, ty.i0), *b = p + im.index(tx.i1, ty.i0);
+    const float *c = p + im.index(tx.i0, ty.i1), *d = p + im.index(tx.i1, ty.i1);
+    vec4 v(0.0f, 0.0f, 0.0f, 1.0f);
+    for (int k = 0; k < 3; ++k) {
+      const float lo = a[k] + (b[k] - a[k]) * tx.w, hi = c[k] + (d[k] - c[k]) * tx.w;
+      v[k] = lo + (hi - lo) * ty.w;
+    }
+    return v;
+  }
   auto texel = [&](int x, int y) { return detail::load(&im.data[im.index(x, y)], im.channels); };
   const vec4 a = mix(texel(tx.i0, ty.i0), texel(tx.i1, ty.i0), tx.w);
   const vec4 b = mix(texel(tx.i0, ty.i1), texel(tx.i1, ty.i1), tx.w);

@@ -4,9 +4,10 @@
 namespace welkin::sky {
 
 void describe(AtmosphereParams& p, ParamVisitor& v) {
-  v.value({"aerosol_scale_height_m", "m", "e-folding height of the haze", 50, 10000}, p.aerosolScaleHeightM);
+  v.value({"aerosol_scale_height_m", "m", "e-folding height of the haze in good visibility", 50, 10000},
+          p.aerosolScaleHeightM);
   v.value({"aerosol_albedo", "", "single-scattering albedo of the haze", 0, 1}, p.aerosolAlbedo);
-  v.value({"aerosol_g", "", "mean cosine of the haze's phase function", 0, 0.95}, p.aerosolG);
+  v.value({"aerosol_g", "", "mean cosine of the haze's phase function", 0.3, 0.9}, p.aerosolG);
   v.value({"ozone_du", "DU", "ozone column", 0, 1000}, p.ozoneDu);
   v.value({"airglow", "cd/m2", "zenith luminance of the moonless night sky", 0, 1}, p.airglowCdPerM2);
 }

@@ -39,17 +39,17 @@ constexpr glm::dvec3 kAngstromWavelengthNm{640.4, 545.6, 441.6};
 constexpr glm::vec3 kAirglowColour{1.12f, 0.98f, 0.85f};
 constexpr double kAirglowAltitudeM = 90e3;
 
-// Haze is coloured where its particles are small and grey where they are fog: exponent 1.3 at 20 km of
-// visibility and beyond, 0 at 1 km.
+// Haze is coloured where its particles are small and grey where they are fog: exponent 1.6 (dry continental
+// haze) at 20 km of visibility and beyond, 0 at 1 km.
 double angstromExponent(double visibilityM) {
-  return 1.3 * std::clamp(std::log(visibilityM / 1e3) / std::log(20.0), 0.0, 1.0);
+  return 1.6 * std::clamp(std::log(std::max(visibilityM, 1.0) / 1e3) / std::log(20.0), 0.0, 1.0);
 }
 
-// The thicker the haze, the shallower: a 100 m fog is not 1,200 m deep. The height goes with the root of the
-// visibility under 10 km, which keeps the optical depth of the column between 0.5 at 10 km, 1.5 at 1 km and 5
-// at 100 m.
+// The thicker the haze, the shallower: a 100 m fog is not 2 km deep. Under 20 km the height goes with a power
+// of the visibility that keeps the optical depth of the column to plausible values: 0.4 at 20 km, 0.7 at 5
+// km, 1.5 at 1 km, 4 at 100 m.
 double hazeScaleHeightM(double fullM, double visibilityM) {
-  return fullM * std::clamp(std::sqrt(visibilityM / 10e3), 0.1, 1.0);
+  return fullM * std::clamp(std::pow(visibilityM / 20e3, 0.55), 0.05, 1.0);
 }
 
 }  // namespace
