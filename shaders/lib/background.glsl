@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies behind the clouds: the clear sky with its discs, or the ground.
+
+uniform sampler2D uSkyView;
+uniform sampler3D uAerialInscatter;
+uniform sampler3D uAerialTransmittance;
+uniform vec3 uGroundAlbedo;
+uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
+uniform float uHazeLight;         // share of the clear air's light that is left under the clouds
+uniform float uDiscs;             // 1: draw the discs
+uniform vec3 uSunDirection;
+uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, cd/m2
+uniform float uSunRadius;         // rad
+uniform vec3 uMoonDirection;
+uniform vec3 uMoonLuminance;      // of the fully lit part
+uniform float uMoonRadius;
+
+float groundDistance(vec3 dir) {
+  float b = (uEarthRadiusM + uEyeM) * dir.z;
+  float c = uEyeM * (2.0 * uEarthRadiusM + uEyeM);
+  float disc = b * b - c;
+  if (b >= 0.0 || disc <= 0.0) return 1e9;
+  return c / (-b + sqrt(disc));
+}
+
+void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
+  atmosphereAerial(uAtmosphere, uAerialInscatter, uAerialTransmittance, uEyeM + uGroundAltitudeM, dir, uKeyDirection,
+                   distanceM, inscatter, through);
+  inscatter *= uHazeLight;
+}
+
+// Limb darkening of the sun in the visible, D. Hestroffer and C. Magnan 1998 (exponent for 550 nm), mean 1 over the disc.
+vec3 sunDisc(vec3 dir) {
+  float x = length(cross(dir, uSunDirection)) / uSunRadius;
+  if (x >= 1.0 || dot(dir, uSunDirection) < 0.0) return vec3(0.0);
+  float exponent = 0.41;
+  return uSunLuminance * pow(1.0 - x * x, 0.5 * exponent) * (0.5 * exponent + 1.0);
+}
+
+// The moon's disc, lit by the sun as a dusty sphere (Lommel-Seeliger); the dark part keeps a trace of earthshine.
+vec3 moonDisc(vec3 dir) {
+  vec3 across = dir - uMoonDirection * dot(dir, uMoonDirection);
+  float x2 = dot(across, across) / (uMoonRadius * uMoonRadius);
+  if (x2 >= 1.0 || dot(dir, uMoonDirection) < 0.0) return vec3(0.0);
+  float mu = sqrt(1.0 - x2);
+  vec3 normal = across / uMoonRadius - uMoonDirection * mu;
+  float mu0 = max(dot(normal, uSunDirection), 0.0);
+  return uMoonLuminance * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+}
+
+vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
+  vec3 p = vec3(0.0, 0.0, uEyeM) + dir * distanceM;
+  vec3 q = cloudPosition(p, uEarthRadiusM);
+  vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
+  float incidence = max(dot(up, uKeyDirection), 0.0);
+  float shadow = exp(-cloudDepthToSun(uLightVolume, vec3(vec2(q), 0.0), dither));
+  vec3 light = keyLightAt(0.0, p) * incidence * shadow + uSkyOnGround;
+  // Fields and woods: the albedo wanders by a third about its mean over some hundred metres to kilometres.
+  vec2 a = textureLod(uPlacement, vec2(q) / 9000.0, 0.0).xy;
+  float b = textureLod(uPlacement, vec2(q.y, -q.x) / 31000.0, 0.0).y;
+  vec3 albedo = uGroundAlbedo * clamp(1.0 + 0.12 * a.y + 0.12 * b + vec3(0.05, 0.0, -0.05) * a.x, 0.4, 1.6);
+  return albedo * light / 3.14159265;
+}
+
+vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad, float dither) {
+  if (groundM < 1e8) {
+    vec3 inscatter, through;
+    aerial(dir, groundM, inscatter, through);
+    return groundLuminance(dir, groundM, dither) * through + inscatter;
+  }
+  vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+  if (uDiscs > 0.5) {
+    vec3 disc = sunDisc(dir) + moonDisc(dir);
+    if (disc.x + disc.y > 0.0)
+      sky += disc * atmosphereTransmittance(uAtmosphere, uTransmittance, uEyeM + uGroundAltitudeM, dir.z);
+  }
+  return sky;
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The density of cloud as a function of position: the one definition that CPU and GPU share.
+//
+// Position q: metres east and north along the curved ground, and height above it. Density is extinction in 1/m.
+// Textures: `placement` has three independent standard-normal maps (round cells, fractal noise, patches); `shapeNoise` and
+// `detailNoise` are zero-mean, unit-variance 3D noises. All tile.
+// The approach, a placement map giving form to 3D noise that erodes its edges, is that of A. Schneider 2015, "The Real-Time
+// Volumetric Cloudscapes of Horizon: Zero Dawn"; here it is written as a level set in units of the placement noise, so that a
+// threshold is a cover and the distance to the surface can be bounded.
+//
+// Needs lib/cloud_layer.glsl before it.
+
+// Earth-centred geometry without loss of precision: p is relative to the ground point below the eye, z up.
+WELKIN_FN float heightAboveGround(vec3 p, float earthRadiusM) {
+  float c = 2.0f * earthRadiusM + p.z;
+  float horizontal2 = p.x * p.x + p.y * p.y;
+  float excess = p.z * c + horizontal2;  // |centre p|^2 - R^2
+  return excess / (sqrt(earthRadiusM * earthRadiusM + excess) + earthRadiusM);
+}
+
+// Distance along the ground: azimuthal equidistant about the eye's foot (series of atan, exact to 1e-6 within 600 km).
+WELKIN_FN vec3 cloudPosition(vec3 p, float earthRadiusM) {
+  float up = earthRadiusM + p.z;
+  float t2 = (p.x * p.x + p.y * p.y) / (up * up);
+  float k = earthRadiusM / up * (1.0f - t2 * (1.0f / 3.0f - t2 * 0.2f));
+  return vec3(p.x * k, p.y * k, heightAboveGround(p, earthRadiusM));
+}
+
+// Position in the frame of a layer's pattern: across and along its streaks, moved with wind and shear.
+WELKIN_FN vec2 cloudPatternPosition(CloudLayer layer, vec3 q, float h) {
+  vec2 p = vec2(q.x, q.y) - layer.driftM - layer.shearM * h;
+  return vec2(dot(p, layer.along), p.y * layer.along.x - p.x * layer.along.y);
+}
+
+// Placement noise, standard normal.
+WELKIN_FN float cloudPlacement(CloudLayer layer, sampler2D placement, vec2 p) {
+  vec2 a = vec2(p.x / layer.stretch, p.y);
+  // Patches turned by an angle whose tangent is irrational against the tile, so that the two periods never agree.
+  vec2 turned = vec2(0.8f * a.x - 0.6f * a.y, 0.6f * a.x + 0.8f * a.y) / layer.patchM;
+  vec4 patches = textureLod(placement, turned, 0.0f);
+  vec2 b = (a + layer.warpM * vec2(patches.y, patches.x)) / layer.cellM;
+  vec4 cells = textureLod(placement, b, 0.0f);
+  return layer.cellWeight * cells.x + layer.fractalWeight * cells.y + layer.patchWeight * patches.z;
+}
+
+// How much the surface is drawn in at relative height h in [0, 1], sd.
+WELKIN_FN float cloudProfile(CloudLayer layer, float h) {
+  float towardsBase = 1.0f - h;
+  float anvil = layer.anvil * smoothstep(0.62f, 0.88f, h);
+  return layer.dome * pow(h, layer.domePower) + layer.belly * towardsBase * towardsBase - anvil;
+}
+
+// Extinction at q. `detail` in [0, 1] fades the small noise out where it would be smaller than a pixel or a step.
+// clearM: where the density is 0, a distance within which it stays so (an estimate with a margin); else 0.
+WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D shapeNoise, sampler3D detailNoise, vec3 q,
+                                float detail, WELKIN_OUT(float) clearM) {
+  clearM = 0.0f;
+  float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
+  if (h <= 0.0f || h >= 1.0f) return 0.0f;
+  vec2 p = cloudPatternPosition(layer, q, h);
+  float s = cloudPlacement(layer, placement, p) - layer.threshold - cloudProfile(layer, h);
+  float shapeAmount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
+  // The noises seldom exceed two and a half deviations.
+  float bound = s + 2.5f * shapeAmount + 2.0f * layer.detailAmount * detail;
+  if (bound <= 0.0f) {
+    clearM = -bound * layer.reachM;
+    return 0.0f;
+  }
+  vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z);
+  s += shapeAmount * textureLod(shapeNoise, (p3 - layer.shapeShiftM) / layer.shapeM, 0.0f).x;
+  bound = s + 2.0f * layer.detailAmount * detail;
+  if (bound <= 0.0f) {
+    clearM = -bound * layer.reachM * 0.5f;
+    return 0.0f;
+  }
+  if (detail > 0.0f && layer.detailAmount > 0.0f && s < layer.edge + 2.0f * layer.detailAmount) {
+    float n = textureLod(detailNoise, (p3 - layer.detailShiftM) / layer.detailM, 0.0f).x;
+    s += detail * layer.detailAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h)) * n;
+  }
+  if (s <= 0.0f) return 0.0f;
+  float body = clamp(s / layer.edge, 0.0f, 1.0f);
+  float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
+  return layer.extinction * body * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
+}

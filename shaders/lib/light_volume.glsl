@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light volume: optical depths around the eye, from every point along the line to the sun, up and down.
+//
+// Three nested squares of columns centred on the eye (cascades), each a stack of slices. Slices lie only where there are layers: a
+// band is a range of heights with cloud, and bands lie on one another in the stack. The texture holds the cascades above one
+// another along z. Channels: depth up the line, straight up, down the line, straight down. The line points to the sun, or away
+// from it when the sun is below the horizon, so that it always goes up.
+
+const int kMaxBands = 8;
+const int kCascades = 3;
+
+uniform vec4 uBands[kMaxBands];    // base m, top m, first slice, last slice
+uniform int uBandCount;
+uniform float uSliceCount;         // of one cascade
+uniform float uCascadeHalfM[kCascades];
+uniform vec3 uLine;                // unit, z > 0
+uniform float uLineTowardsSun;     // 1: towards the sun, 0: away from it
+
+// Slice at a height, fractional. Between bands: the first slice of the band above (from below) has all that lies above.
+float lightVolumeSlice(float heightM) {
+  float slice = uBands[0].z;
+  for (int i = 0; i < uBandCount; ++i) {
+    vec4 band = uBands[i];
+    if (heightM >= band.x) slice = mix(band.z, band.w, clamp((heightM - band.x) / (band.y - band.x), 0.0, 1.0));
+  }
+  return slice;
+}
+
+vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
+  vec2 uv = clamp(q / uCascadeHalfM[cascade] * 0.5 + 0.5, 0.0, 1.0);
+  float w = (float(cascade) * uSliceCount + slice + 0.5) / (uSliceCount * float(kCascades));
+  return textureLod(volume, vec3(uv, w), 0.0);
+}
+
+// dither in [0, 1) picks between cascades near their borders, so that accumulated frames blend them.
+vec4 lightVolumeAt(sampler3D volume, vec3 q, float dither) {
+  float reach = max(abs(q.x), abs(q.y)) * (1.0 + 0.25 * dither);
+  int cascade = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
+  return lightVolumeTexel(volume, vec2(q), lightVolumeSlice(q.z), cascade);
+}
+
+CloudDepths cloudDepthsAt(sampler3D volume, vec3 q, float dither) {
+  vec4 v = lightVolumeAt(volume, q, dither);
+  bool towards = uLineTowardsSun > 0.5;
+  return CloudDepths(towards ? v.x : v.z, towards ? v.z : v.x, v.y, v.w);
+}
+
+// Depth towards the sun from anywhere outside the bands too, as for the ground: along the line to the next band, then as stored.
+float cloudDepthToSun(sampler3D volume, vec3 q, float dither) {
+  if (uBandCount == 0 || uLineTowardsSun < 0.5) return 0.0;
+  vec3 p = q;
+  bool inside = false;
+  float nextBase = 1e9;
+  for (int i = 0; i < uBandCount; ++i) {
+    if (q.z >= uBands[i].x && q.z <= uBands[i].y) inside = true;
+    if (uBands[i].x > q.z) nextBase = min(nextBase, uBands[i].x);
+  }
+  if (!inside) {
+    if (nextBase > 1e8) return 0.0;
+    p = q + uLine * ((nextBase - q.z) / uLine.z);
+  }
+  return lightVolumeAt(volume, p, dither).x;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// One sub-frame of the whole picture: sky, discs, ground, and one march through all layers of cloud. Sub-frames differ in their
+// place within the pixel and along the ray; their sum, weighted by uWeight, converges to the still.
+
+#include "lib/projection.glsl"
+#include "lib/phase.glsl"
+#include "lib/atmosphere.glsl"
+#include "lib/cloud_uniforms.glsl"
+#include "lib/cloud_light.glsl"
+#include "lib/light_volume.glsl"
+#include "lib/march.glsl"
+#include "lib/background.glsl"
+
+uniform Projector uProjector;
+uniform vec2 uJitterPx;           // of this sub-frame within the pixel
+uniform float uJitterStep;        // of this sub-frame along the ray, [0, 1)
+uniform float uWeight;
+
+layout(location = 0) out vec4 outColor;
+
+// Interleaved gradient noise (J. Jimenez 2014): neighbours differ as much as they can.
+float interleavedNoise(vec2 px) { return fract(52.9829189 * fract(dot(px, vec2(0.06711056, 0.00583715)))); }
+
+void main() {
+  vec2 px = vec2(gl_FragCoord.x, uProjector.sizePx.y - gl_FragCoord.y);
+  vec3 dir;
+  float pixelRad;
+  if (!projectorDirection(uProjector, px + uJitterPx, dir, pixelRad)) {
+    outColor = vec4(0.0, 0.0, 0.0, uWeight);
+    return;
+  }
+  float dither = fract(interleavedNoise(floor(px)) + uJitterStep);
+  float groundM = groundDistance(dir);
+  CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
+  vec3 color = vec3(0.0);
+  if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad, dither);
+  if (ray.transmittance < 0.9999) {
+    vec3 inscatter, through;
+    aerial(dir, ray.depthM, inscatter, through);
+    color += ray.luminance * through + inscatter * (1.0 - ray.transmittance);
+  }
+  outColor = vec4(color * uWeight, uWeight);
+}

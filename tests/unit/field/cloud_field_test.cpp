@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/field/cloud_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "test_layers.h"
+#include "welkin/core/error.h"
+#include "welkin/core/random.h"
+#include "welkin/core/units.h"
+
+namespace welkin::field {
+namespace {
+
+TEST(CloudField, IsEmptyOutsideItsLayers) {
+  const CloudField field(testNoise(), {cumulusLike(-4.0f)}, 0.0);
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const float x = 2e4f * random.uniform(), y = 2e4f * random.uniform();
+    EXPECT_EQ(field.extinction({x, y, 500.0f}), 0.0f);
+    EXPECT_EQ(field.extinction({x, y, 2600.0f}), 0.0f);
+  }
+}
+
+TEST(CloudField, NeverExceedsWhatTheBodyMayHave) {
+  const CloudLayer layer = cumulusLike(-4.0f);
+  const CloudField field(testNoise(), {layer}, 0.0);
+  Random random(2);
+  float greatest = 0.0f;
+  for (int i = 0; i < 20000; ++i) {
+    const float e = field.extinction({1e4f * random.uniform(), 1e4f * random.uniform(), 1000.0f + 1000.0f * random.uniform()});
+    EXPECT_GE(e, 0.0f);
+    greatest = std::max(greatest, e);
+  }
+  EXPECT_GT(greatest, 0.9f * layer.extinction);
+  EXPECT_LE(greatest, 1.31f * layer.extinction);
+}
+
+// Moving the pattern with the wind is moving the eye against it.
+TEST(CloudField, DriftsWithTheWind) {
+  CloudLayer still = cumulusLike(0.5f);
+  CloudLayer moved = still;
+  moved.driftM += glm::vec2(300.0f, -120.0f);
+  const CloudField a(testNoise(), {still}, 0.0), b(testNoise(), {moved}, 0.0);
+  Random random(3);
+  int cloudy = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const glm::vec3 p(3000 * random.uniform(), 3000 * random.uniform(), 1000 + 900 * random.uniform());
+    const float e = a.extinction(p);
+    cloudy += e > 0.0f;
+    EXPECT_NEAR(e, b.extinction(p + glm::vec3(300.0f, -120.0f, 0.0f)), 0.05f * still.extinction);
+  }
+  EXPECT_GT(cloudy, 100);
+}
+
+// Layers follow the curve of the earth: 100 km away a level line of sight is 785 m higher above the ground.
+TEST(CloudField, FollowsTheCurveOfTheEarth) {
+  CloudLayer sheet = sheetLike();
+  sheet.baseM = 600.0f;
+  sheet.topM = 1000.0f;
+  const CloudField field(testNoise(), {sheet}, 0.0);
+  EXPECT_EQ(field.extinction({100e3f, 0.0f, 0.0f - 300.0f}), 0.0f);
+  EXPECT_GT(field.extinction({100e3f, 0.0f, 0.0f}), 0.0f);
+  EXPECT_EQ(field.extinction({0.0f, 0.0f, 0.0f}), 0.0f);
+}
+
+// A homogeneous shell has a known optical depth straight up and, on a sphere, along a slant.
+TEST(CloudField, OpticalDepthOfAShellIsExact) {
+  const CloudLayer sheet = sheetLike();
+  const CloudField field(testNoise(), {sheet}, 0.0);
+  const float vertical = sheet.extinction * (sheet.topM - sheet.baseM);
+  const float softened = 0.5f * (sheet.bottomSoft + sheet.topSoft);  // smoothstep fades integrate to half their width
+  EXPECT_NEAR(field.opticalDepth({0, 0, 2}, {0, 0, 1}, 1e9f), vertical * (1 - softened), 0.01f * vertical);
+  const double elevation = radians(10.0);
+  const glm::vec3 d(static_cast<float>(std::cos(elevation)), 0.0f, static_cast<float>(std::sin(elevation)));
+  auto crossing = [&](double h) {  // distance to the sphere at height h
+    const double r = kEarthRadiusM + 2, s = std::sin(elevation) * r;
+    return -s + std::sqrt(s * s + (h - 2) * (2 * kEarthRadiusM + h + 2));
+  };
+  const double slant = (crossing(sheet.topM) - crossing(sheet.baseM)) * sheet.extinction;
+  EXPECT_NEAR(field.opticalDepth({0, 0, 2}, d, 1e9f), slant * (1 - softened), 0.02 * slant);
+}
+
+TEST(CloudField, SeesLayersFromAboveAndFromWithin) {
+  const CloudLayer sheet = sheetLike();
+  const CloudField field(testNoise(), {sheet}, 0.0);
+  const float through = field.opticalDepth({0, 0, 2}, {0, 0, 1}, 1e9f);
+  EXPECT_NEAR(field.opticalDepth({0, 0, 9000}, {0, 0, -1}, 1e9f), through, 0.01f * through);
+  const float middle = 0.5f * (sheet.baseM + sheet.topM);
+  EXPECT_NEAR(field.opticalDepth({0, 0, middle}, {0, 0, 1}, 1e9f) + field.opticalDepth({0, 0, middle}, {0, 0, -1}, 1e9f), through,
+              0.02f * through);
+}
+
+// Empty-space steps must not jump over cloud: fine steps that trust no hint find the same optical depth.
+TEST(CloudField, EmptySpaceStepsMissNothing) {
+  const CloudField field(testNoise(), {cumulusLike(1.0f)}, 0.0);
+  double quick = 0, slow = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double azimuth = i * 2.4, elevation = radians(15.0 + 70.0 * i / 300.0);
+    const glm::vec3 d(static_cast<float>(std::cos(elevation) * std::sin(azimuth)),
+                      static_cast<float>(std::cos(elevation) * std::cos(azimuth)), static_cast<float>(std::sin(elevation)));
+    quick += std::min(field.opticalDepth({0, 0, 2}, d, 50.0f), 50.0f);
+    double tau = 0;
+    const double from = 990.0 / std::sin(elevation), to = 2010.0 / std::sin(elevation);
+    for (double t = from; t < to && tau < 50; t += 6.0) tau += 6.0 * field.extinction(glm::vec3(0, 0, 2) + d * static_cast<float>(t));
+    slow += std::min(tau, 50.0);
+  }
+  EXPECT_NEAR(quick, slow, 0.04 * slow);
+}
+
+TEST(CloudField, RefusesTooManyLayers) {
+  EXPECT_THROW(CloudField(testNoise(), std::vector<CloudLayer>(kMaxLayers + 1, sheetLike()), 0.0), ParameterError);
+}
+
+}  // namespace
+}  // namespace welkin::field

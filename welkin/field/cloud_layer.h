@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shape of one layer of cloud; the struct itself stands in shaders/lib/cloud_layer.glsl, for CPU and GPU alike.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace welkin::field {
+
+using glm::vec2, glm::vec3;
+
+#include "shaders/lib/cloud_layer.glsl"
+
+// Calls f(name, value) for every member, in order: what uniform packing and dumps are made from.
+template <class F>
+void forEachMember(const CloudLayer& l, F&& f) {
+  f("baseM", l.baseM), f("topM", l.topM), f("extinction", l.extinction), f("threshold", l.threshold);
+  f("driftM", l.driftM), f("shearM", l.shearM), f("along", l.along), f("stretch", l.stretch);
+  f("cellM", l.cellM), f("cellWeight", l.cellWeight), f("fractalWeight", l.fractalWeight);
+  f("patchWeight", l.patchWeight), f("patchM", l.patchM), f("warpM", l.warpM);
+  f("dome", l.dome), f("domePower", l.domePower), f("belly", l.belly), f("anvil", l.anvil);
+  f("bottomSoft", l.bottomSoft), f("topSoft", l.topSoft);
+  f("shapeM", l.shapeM), f("shapeAmount", l.shapeAmount), f("shapeAtBase", l.shapeAtBase);
+  f("shapeStretch", l.shapeStretch), f("detailM", l.detailM), f("detailAmount", l.detailAmount);
+  f("shapeShiftM", l.shapeShiftM), f("detailShiftM", l.detailShiftM);
+  f("edge", l.edge), f("lift", l.lift), f("reachM", l.reachM);
+}
+
+}  // namespace welkin::field

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/display.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "welkin/core/parallel.h"
+
+namespace welkin::render {
+namespace {
+
+// Luminance that exposure EV at ISO 100 renders as 1 (ISO 12232, saturation-based: 78 / 65 * 2^EV, S. Lagarde and C. de
+// Rousiers 2014, "Moving Frostbite to PBR", 5.1.2).
+double whiteLuminance(double ev) { return 1.2 * std::exp2(ev); }
+double evOfWhite(double luminance) { return std::log2(luminance / 1.2); }
+
+float luminanceOf(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+
+// Linear up to kKnee, then a shoulder that reaches 1 at infinity with continuous slope: clouds keep their modelling up to the
+// sun, and what lies below the knee (the sky) is left as it is.
+constexpr float kKnee = 0.45f;
+float shoulder(float x) {
+  if (x <= kKnee) return x;
+  const float y = (x - kKnee) / (1.0f - kKnee);
+  return kKnee + (1.0f - kKnee) * (1.0f - std::exp(-y));
+}
+
+// IEC 61966-2-1.
+float encode(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f; }
+
+}  // namespace
+
+double automaticExposureEv(const Image<float>& luminance) {
+  // Percentiles from a sample of at most some ten thousand pixels on a regular grid: the same for any thread count.
+  std::vector<float> values;
+  const int step = std::max(1, static_cast<int>(std::sqrt(luminance.width * luminance.height / 16384.0)));
+  double logSum = 0.0;
+  for (int y = step / 2; y < luminance.height; y += step)
+    for (int x = step / 2; x < luminance.width; x += step) {
+      const float l = luminanceOf(&luminance.data[luminance.index(x, y)]);
+      if (!(l > 0.0f)) continue;  // outside the image circle
+      values.push_back(l);
+      logSum += std::log(l);
+    }
+  if (values.empty()) return 15.0;
+  const double mean = std::exp(logSum / static_cast<double>(values.size()));
+  // How bright the mean is to look: G. Krawczyk, K. Myszkowski and H.-P. Seidel 2005, "Perceptual Effects in Real-time Tone
+  // Mapping", eq. 11; dim scenes stay dim.
+  const double key = 1.03 - 2.0 / (2.0 + std::log10(mean + 1.0));
+  const double evMean = evOfWhite(mean / (0.42 * key));
+  // Bright clouds must keep their modelling: the brightest twentieth may not pass twice white.
+  const std::size_t rank = values.size() * 95 / 100;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
+  const double evBright = evOfWhite(values[rank] / (2.4 * key + 0.1));
+  return std::max(evMean, evBright);
+}
+
+Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
+  Image<float> out(luminance.width, luminance.height, 3);
+  const float scale = static_cast<float>(1.0 / whiteLuminance(exposureEv));
+  parallelFor(luminance.height, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < luminance.width; ++x) {
+        const float* in = &luminance.data[luminance.index(x, static_cast<int>(y))];
+        float* o = &out.data[out.index(x, static_cast<int>(y))];
+        float rgb[3];
+        for (int c = 0; c < 3; ++c) rgb[c] = std::max(in[c] * scale, 0.0f);
+        // Half way between a curve on each channel (light things turn white) and one on the brightest (hues stay).
+        const float peak = std::max({rgb[0], rgb[1], rgb[2], 1e-9f});
+        const float keep = shoulder(peak) / peak;
+        for (int c = 0; c < 3; ++c) o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + shoulder(rgb[c])), 0.0f, 1.0f));
+      }
+  });
+  return out;
+}
+
+}  // namespace welkin::render

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/sky_renderer.h"
+
+#include <cmath>
+#include <optional>
+
+#include "welkin/gpu/context.h"
+#include "welkin/gpu/draw.h"
+#include "welkin/gpu/framebuffer.h"
+#include "welkin/render/cloud_textures.h"
+#include "welkin/render/display.h"
+#include "welkin/render/light_volume_pass.h"
+#include "welkin/render/programs.h"
+#include "welkin/shading/uniforms.h"
+
+namespace welkin::render {
+namespace {
+
+// Point i of a sequence that fills the unit square evenly from the start (M. Roberts 2018, "The Unreasonable Effectiveness of
+// Quasirandom Sequences": R2, R1 in one dimension).
+glm::vec2 quasiRandom2(int i) {
+  auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * (i + 1), 1.0)); };
+  return {part(0.7548776662466927), part(0.5698402909980532)};
+}
+float quasiRandom1(int i) { return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * (i + 1), 1.0)); }
+
+}  // namespace
+
+struct SkyRenderer::Impl {
+  gpu::Context context;
+  gpu::FullscreenTriangle triangle;
+  gpu::Program sky = fullscreenProgram("pass/sky.frag");
+  LightVolumePass lightVolume;
+  std::optional<CloudTextures> clouds;
+};
+
+SkyRenderer::SkyRenderer() : impl_(std::make_unique<Impl>()) {}
+SkyRenderer::~SkyRenderer() = default;
+
+std::string SkyRenderer::deviceName() const { return impl_->context.deviceName(); }
+
+Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
+  Picture picture;
+  gpu::Stopwatch watch;
+  auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
+  const int width = static_cast<int>(state.scene.output.width), height = static_cast<int>(state.scene.output.height);
+
+  if (!impl_->clouds || impl_->clouds->noise() != state.clouds->sharedNoise()) impl_->clouds.emplace(state.clouds->sharedNoise());
+  const sky::SkyTables tables = sky::makeSkyTables(*state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
+  const gpu::TextureOptions half{.format = gpu::Format::kRgba16F}, full{.format = gpu::Format::kRgba32F};
+  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full);
+  const gpu::Texture3D inscatter(tables.aerialInscatter, full), through(tables.aerialTransmittance, half);
+  done("tables");
+
+  const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state);
+  impl_->lightVolume.draw(state, layout, *impl_->clouds);
+  done("light volume");
+
+  const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
+  gpu::Program& p = impl_->sky;
+  setUniforms(p, shading::cloudUniforms(state));
+  setUniforms(p, shading::skyUniforms(state));
+  setUniforms(p, shading::marchUniforms(settings));
+  setUniforms(p, shading::projectorUniforms(state));
+  setUniforms(p, shading::lightVolumeUniforms(layout));
+  impl_->clouds->bind(p);
+  p.bind("uTransmittance", transmittance);
+  p.bind("uSkyView", skyView);
+  p.bind("uAerialInscatter", inscatter);
+  p.bind("uAerialTransmittance", through);
+  p.bind("uLightVolume", impl_->lightVolume.volume());
+
+  const gpu::Texture2D sum(width, height, full);
+  const gpu::Framebuffer target(sum);
+  target.clear();
+  p.set("uWeight", 1.0f / static_cast<float>(settings.subframes));
+  for (int i = 0; i < settings.subframes; ++i) {
+    p.set("uJitterPx", quasiRandom2(i) - 0.5f);
+    p.set("uJitterStep", quasiRandom1(i));
+    // In bands of rows, so that progress is seen and Ctrl-C is heard.
+    constexpr int kBands = 8;
+    for (int b = 0; b < kBands; ++b) {
+      const int y0 = height * b / kBands, y1 = height * (b + 1) / kBands;
+      impl_->triangle.draw(p, target, {.tile = gpu::Tile{0, y0, width, y1 - y0}, .blend = gpu::Blend::kAdd});
+      if (progress) {
+        gpu::finish();
+        progress(static_cast<double>(i * kBands + b + 1) / (settings.subframes * kBands));
+      }
+    }
+  }
+  done("march");
+
+  picture.luminance = target.readPicture(0, 3);
+  picture.autoExposureEv = automaticExposureEv(picture.luminance);
+  done("read back");
+  return picture;
+}
+
+}  // namespace welkin::render

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/shading/uniforms.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/units.h"
+#include "welkin/field/cloud_field.h"
+#include "welkin/scene/cloud_shapes.h"
+
+namespace welkin::shading {
+namespace {
+
+std::string layerMember(std::size_t i, const char* member) {
+  return "uLayers[" + std::to_string(i) + "]." + member;
+}
+
+}  // namespace
+
+Uniforms cloudUniforms(const scene::SkyState& state) {
+  Uniforms u;
+  const auto layers = state.clouds->layers();
+  u.emplace_back("uLayerCount", static_cast<int>(layers.size()));
+  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
+  std::vector<float> ice(field::kMaxLayers, 0.0f);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    field::forEachMember(layers[i],
+                         [&](const char* name, auto value) { u.emplace_back(layerMember(i, name), value); });
+    ice[i] = scene::isIce(state.weather.layers[i].genus) ? 1.0f : 0.0f;
+  }
+  u.emplace_back("uLayerIce", ice);
+  return u;
+}
+
+Uniforms skyUniforms(const scene::SkyState& state) {
+  Uniforms u;
+  const scene::Scene& s = state.scene;
+  sky::visitFields(state.atmosphere->uniforms(), [&](const char* name, auto value) {
+    u.emplace_back(std::string("uAtmosphere.") + name, value);
+  });
+  u.emplace_back("uEyeM", static_cast<float>(s.camera.eyeM));
+  u.emplace_back("uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
+  u.emplace_back("uKeyDirection", state.lights[0].direction);
+  u.emplace_back("uKeyIlluminance", state.lights[0].illuminance);
+  u.emplace_back("uSkyLow", state.ambient.skyLow);
+  u.emplace_back("uSkyHigh", state.ambient.skyHigh);
+  u.emplace_back("uSkyOnGround", state.ambient.skyOnGround);
+  u.emplace_back("uGroundLight", state.ambient.ground);
+  u.emplace_back("uHazeLight", state.ambient.hazeLight);
+  u.emplace_back("uGroundAlbedo", glm::vec3(s.ground.albedo));
+
+  double diameter = 0.0, weight = 1e-9;
+  for (const weather::Layer& layer : state.weather.layers) {
+    if (scene::isIce(layer.genus)) continue;
+    diameter += 2.0 * layer.effectiveRadiusUm * layer.oktas;
+    weight += layer.oktas;
+  }
+  u.emplace_back("uDropletDiameterUm", static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
+
+  // Discs: illuminance spread over the disc's solid angle. The moon's is its full phase's, dimmed by the lit
+  // share as drawn.
+  const sky::Ephemeris& e = state.ephemeris;
+  const sky::Light sun = sky::sunLight(e), moon = sky::moonLight(e);
+  auto discLuminance = [](const sky::Light& light, double radius, double share) {
+    return light.illuminance / static_cast<float>(kPi * radius * radius * std::max(share, 0.005));
+  };
+  u.emplace_back("uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
+  u.emplace_back("uSunDirection", sun.direction);
+  u.emplace_back("uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
+  u.emplace_back("uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));
+  u.emplace_back("uMoonDirection", moon.direction);
+  u.emplace_back("uMoonRadius", static_cast<float>(e.moon.angularRadiusRad));
+  u.emplace_back("uMoonLuminance", discLuminance(moon, e.moon.angularRadiusRad, e.moonIlluminatedFraction));
+  return u;
+}
+
+MarchSettings marchSettings(scene::Quality quality) {
+  switch (quality) {
+    case scene::Quality::kLow:
+      return {.subframes = 4, .stepNearM = 45.0f, .stepShare = 0.012f, .maxSteps = 160, .sunSamples = 3};
+    case scene::Quality::kMedium:
+      return {.subframes = 8, .stepNearM = 35.0f, .stepShare = 0.009f, .maxSteps = 240, .sunSamples = 4};
+    case scene::Quality::kHigh:
+      return {.subframes = 24, .stepNearM = 25.0f, .stepShare = 0.006f, .maxSteps = 400, .sunSamples = 6};
+    case scene::Quality::kUltra:
+      return {.subframes = 64, .stepNearM = 16.0f, .stepShare = 0.004f, .maxSteps = 800, .sunSamples = 8};
+  }
+  return {};
+}
+
+Uniforms marchUniforms(const MarchSettings& settings) {
+  return {{"uStepNearM", settings.stepNearM},
+          {"uStepShare", settings.stepShare},
+          {"uMaxSteps", settings.maxSteps},
+          {"uSunSamples", settings.sunSamples},
+          {"uSunReachM", 900.0f}};
+}
+
+Uniforms projectorUniforms(const scene::SkyState& state) {
+  const scene::Camera& camera = state.scene.camera;
+  const double heading = radians(state.headingDeg);
+  const bool perspective = camera.projection == scene::Projection::kPerspective;
+  const double pitch = perspective ? radians(camera.pitchDeg) : 0.0;
+  const glm::dvec3 right(std::cos(heading), -std::sin(heading), 0.0);
+  const glm::dvec3 forward(std::sin(heading) * std::cos(pitch), std::cos(heading) * std::cos(pitch),
+                           std::sin(pitch));
+  const glm::dvec3 up(-std::sin(heading) * std::sin(pitch), -std::cos(heading) * std::sin(pitch),
+                      std::cos(pitch));
+  return {{"uProjector.kind", static_cast<int>(camera.projection)},
+          {"uProjector.sizePx", glm::vec2(static_cast<float>(state.scene.output.width),
+                                          static_cast<float>(state.scene.output.height))},
+          {"uProjector.halfWidthTan", static_cast<float>(std::tan(0.5 * radians(camera.fovDeg)))},
+          {"uProjector.enuFromCamera", glm::mat3(glm::dmat3(right, forward, up))}};
+}
+
+LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
+  constexpr float kSpacingM = 60.0f;
+  constexpr int kFewest = 6, kMost = 28;
+  LightVolumeLayout layout;
+  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
+  std::sort(layers.begin(), layers.end(),
+            [](const field::CloudLayer& a, const field::CloudLayer& b) { return a.baseM < b.baseM; });
+  for (const field::CloudLayer& layer : layers) {
+    if (!layout.bands.empty() && layer.baseM <= layout.bands.back().topM)
+      layout.bands.back().topM = std::max(layout.bands.back().topM, layer.topM);
+    else
+      layout.bands.push_back({layer.baseM, layer.topM, 0, 0});
+  }
+  for (auto& band : layout.bands) {
+    const int n = std::clamp(static_cast<int>((band.topM - band.baseM) / kSpacingM), kFewest, kMost);
+    band.firstSlice = static_cast<int>(layout.heightsM.size());
+    band.lastSlice = band.firstSlice + n - 1;
+    for (int k = 0; k < n; ++k)
+      layout.heightsM.push_back(band.baseM +
+                                (band.topM - band.baseM) * static_cast<float>(k) / static_cast<float>(n - 1));
+  }
+  // Nearer to level than two degrees the line would leave the volume before it has crossed a layer.
+  const glm::vec3 d = state.lights[0].direction;
+  layout.towardsSun = d.z >= 0.0f;
+  glm::vec3 line = layout.towardsSun ? d : -d;
+  line.z = std::max(line.z, 0.035f);
+  layout.line = glm::normalize(line);
+  return layout;
+}
+
+Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {
+  Uniforms u;
+  u.emplace_back("uBandCount", static_cast<int>(layout.bands.size()));
+  u.emplace_back("uSliceCount", static_cast<float>(std::max<std::size_t>(layout.heightsM.size(), 1)));
+  u.emplace_back("uLine", layout.line);
+  u.emplace_back("uLineTowardsSun", layout.towardsSun ? 1.0f : 0.0f);
+  std::vector<glm::vec4> bands(field::kMaxLayers, glm::vec4(0.0f));
+  for (std::size_t i = 0; i < layout.bands.size(); ++i) {
+    const auto& b = layout.bands[i];
+    bands[i] = {b.baseM, b.topM, static_cast<float>(b.firstSlice), static_cast<float>(b.lastSlice)};
+  }
+  u.emplace_back("uBands", bands);
+  u.emplace_back("uCascadeHalfM", std::vector<float>(layout.kHalfM.begin(), layout.kHalfM.end()));
+  return u;
+}
+
+}  // namespace welkin::shading

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the sky's state to shader uniforms by name. Pure: no GL calls, no state.
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::shading {
+
+// Arrays go whole, by their bare name; structs by member, as in uLayers[2].baseM.
+using UniformValue = std::variant<int, float, glm::vec2, glm::vec3, glm::vec4, glm::mat3, std::vector<float>,
+                                  std::vector<glm::vec4>>;
+using Uniforms = std::vector<std::pair<std::string, UniformValue>>;
+
+// lib/cloud_uniforms.glsl: layers and the earth.
+Uniforms cloudUniforms(const scene::SkyState& state);
+
+// lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
+Uniforms skyUniforms(const scene::SkyState& state);
+
+// How finely to march.
+struct MarchSettings {
+  int subframes = 8;         // accumulated into a still
+  float stepNearM = 30.0f;   // smallest step
+  float stepShare = 0.008f;  // step as a share of the distance
+  int maxSteps = 300;
+  int sunSamples = 4;  // density samples towards the sun before the light volume takes over
+};
+MarchSettings marchSettings(scene::Quality quality);
+Uniforms marchUniforms(const MarchSettings& settings);
+
+// lib/projection.glsl.
+Uniforms projectorUniforms(const scene::SkyState& state);
+
+// The light volume (lib/light_volume.glsl): where its slices and cascades lie.
+struct LightVolumeLayout {
+  struct Band {
+    float baseM, topM;
+    int firstSlice, lastSlice;
+  };
+  static constexpr int kColumns = 160;  // a side, of each cascade
+  static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
+                                                  128000.0f};  // half the side of each cascade
+  std::vector<Band> bands;                                     // from the ground up, disjoint
+  std::vector<float> heightsM;                                 // of the slices
+  glm::vec3 line{0, 0, 1};                                     // along which depths are summed; z > 0
+  bool towardsSun = true;                                      // or away from it
+};
+LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
+Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
+
+}  // namespace welkin::shading
