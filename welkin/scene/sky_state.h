@@ -22,6 +22,15 @@ struct LayerCover {
   double deliveredOktas = 0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
 };
 
+// Light that reaches clouds and ground from all directions at once. Linear Rec. 709.
+struct AmbientLight {
+  glm::vec3 skyLow{0};        // mean luminance of the upper hemisphere of the clear sky at the ground, cd/m2
+  glm::vec3 skyHigh{0};       // the same at 10 km
+  glm::vec3 skyOnGround{0};   // illuminance of the ground by sky and clouds, lux
+  glm::vec3 ground{0};        // mean luminance of the ground, cd/m2
+  float hazeLight = 1.0f;     // share of the clear air's light that is left beneath the clouds
+};
+
 struct SkyState {
   Scene scene;
   UtcTime time;                                  // scene.time + secondsAfter
@@ -31,6 +40,7 @@ struct SkyState {
   std::vector<sky::Light> lights;                // sun and moon; lights[0] is the one that lights the clouds
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::shared_ptr<const field::CloudField> clouds;
+  AmbientLight ambient;
   std::vector<LayerCover> cover;                 // a layer each, in the order of weather.layers
   LayerCover skyCover;                           // the whole sky
   double headingDeg = 0.0;                       // the camera's, with "absent" resolved

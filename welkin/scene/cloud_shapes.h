@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each genus looks like: from a layer of weather to the numbers that shape its density.
+#pragma once
+
+#include <cstdint>
+
+#include "welkin/field/cloud_layer.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::scene {
+
+// The layer's shape `secondsAfter` the moment of the weather. `seed` is the layer's own. The threshold is that of half cover, to be
+// calibrated.
+field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter);
+
+// Whether the layer is made of ice.
+bool isIce(weather::Genus genus);
+
+}  // namespace welkin::scene

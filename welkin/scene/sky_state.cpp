@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/sky_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/random.h"
+#include "welkin/core/units.h"
+#include "welkin/field/cloud_field.h"
+#include "welkin/field/cover.h"
+#include "welkin/scene/cloud_shapes.h"
+#include "welkin/sky/light.h"
+
+namespace welkin::scene {
+namespace {
+
+constexpr double kOktas = 8.0;
+constexpr int kReportDirections = 4000;  // for the delivered numbers; calibration needs fewer
+
+// Illuminance that a light sends through the air onto a horizontal plane at the ground.
+glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light) {
+  const double mu = light.direction.z;
+  if (mu <= 0.0) return glm::vec3(0.0f);
+  return light.illuminance * atmosphere.transmittanceToSpace(atmosphere.groundAltitudeM(), mu) * static_cast<float>(mu);
+}
+
+// Mean share of diffuse light that passes the layers: the clear part of each, and the cloudy part at the Eddington transmittance
+// of conservative cloud for diffuse light, 1 / (1 + 3/4 (1 - g) tau).
+double diffuseTransmittance(const weather::Weather& weather, const field::CloudField& clouds) {
+  double through = 1.0;
+  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
+    const field::CloudLayer& layer = clouds.layers()[i];
+    const double tau = 0.4 * layer.extinction * (layer.topM - layer.baseM);
+    const double cloudy = 1.0 / (1.0 + 0.75 * 0.14 * tau);
+    through *= 1.0 - weather.layers[i].oktas / kOktas * (1.0 - cloudy);
+  }
+  return through;
+}
+
+AmbientLight ambientLight(const SkyState& s) {
+  AmbientLight a;
+  const sky::Atmosphere& atmosphere = *s.atmosphere;
+  const float pi = static_cast<float>(kPi);
+  const glm::vec3 skyOnGround = atmosphere.skyIlluminance(atmosphere.groundAltitudeM(), s.lights);
+  a.skyLow = skyOnGround / pi;
+  a.skyHigh = atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
+  const float through = static_cast<float>(diffuseTransmittance(s.weather, *s.clouds));
+  glm::vec3 direct(0.0f);
+  for (const sky::Light& light : s.lights) direct += horizontalIlluminance(atmosphere, light);
+  // Direct light that clouds take from the ground comes back as diffuse light, as much as they let through.
+  const float cover = static_cast<float>(s.weather.requestedOktas / kOktas);
+  const float diffused = std::max(through - (1.0f - cover), 0.0f);
+  a.skyOnGround = skyOnGround * through + direct * diffused;
+  a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
+  const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;
+  const bool beneath = s.scene.camera.eyeM < lowestBase;
+  a.hazeLight = beneath ? through : 1.0f;
+  return a;
+}
+
+double headingOf(const SkyState& s) {
+  if (s.scene.camera.headingDeg) return *s.scene.camera.headingDeg;
+  if (s.scene.camera.projection != Projection::kPerspective) return 0.0;
+  const glm::vec3 d = s.lights[0].direction;
+  return std::fmod(degrees(std::atan2(d.x, d.y)) + 60.0 + 360.0, 360.0);
+}
+
+std::uint64_t layerSeed(const Scene& scene, std::size_t layer) { return hashOf(static_cast<std::uint64_t>(scene.seed), 77, layer); }
+
+std::vector<field::CloudLayer> shapesAt(const Scene& scene, const weather::Weather& weather, double secondsAfter) {
+  std::vector<field::CloudLayer> shapes;
+  for (std::size_t i = 0; i < weather.layers.size(); ++i)
+    shapes.push_back(shapeOf(weather.layers[i], layerSeed(scene, i), secondsAfter));
+  return shapes;
+}
+
+}  // namespace
+
+SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous) {
+  SkyState s;
+  s.scene = scene;
+  s.secondsAfter = secondsAfter;
+  s.time = addSeconds(scene.time, secondsAfter);
+  s.weather = previous ? previous->weather : weatherOf(scene);
+
+  // Clouds: their cover is calibrated where and when the weather is as described, so that thresholds are the same at any instant.
+  std::vector<field::CloudLayer> shapes = shapesAt(scene, s.weather, secondsAfter);
+  if (previous) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      shapes[i].threshold = previous->clouds->layers()[i].threshold;
+      shapes[i].extinction = previous->clouds->layers()[i].extinction;
+    }
+    s.clouds = std::make_shared<field::CloudField>(previous->clouds->sharedNoise(), shapes, scene.place.altitudeM);
+    s.cover = previous->cover;
+    s.skyCover = previous->skyCover;
+  } else {
+    const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
+    const field::CloudField start(noise, shapesAt(scene, s.weather, 0.0), scene.place.altitudeM);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const field::CloudLayer c =
+          field::calibrated(start, static_cast<int>(i), s.weather.layers[i].oktas / kOktas, field::CoverView{});
+      shapes[i].threshold = c.threshold;
+      shapes[i].extinction = c.extinction;
+    }
+    s.clouds = std::make_shared<field::CloudField>(noise, shapes, scene.place.altitudeM);
+    const field::CoverView view{.directions = kReportDirections};
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      s.cover.push_back({s.weather.layers[i].oktas, kOktas * field::measureCover(*s.clouds, view, static_cast<int>(i))});
+    s.skyCover = {s.weather.requestedOktas, kOktas * field::measureCover(*s.clouds, view)};
+  }
+
+  s.atmosphere = previous ? previous->atmosphere
+                          : std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM, scene.place.altitudeM,
+                                                              glm::vec3(scene.ground.albedo));
+  s.ephemeris = sky::ephemeris(
+      s.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
+  const sky::Light sun = sky::sunLight(s.ephemeris), moon = sky::moonLight(s.ephemeris);
+  // The sun lights the clouds until it stands where its light no longer reaches any of them.
+  const bool bySun = s.ephemeris.sun.elevationDeg > -7.0;
+  s.lights = bySun ? std::vector{sun, moon} : std::vector{moon, sun};
+  s.headingDeg = headingOf(s);
+  s.ambient = ambientLight(s);
+  return s;
+}
+
+}  // namespace welkin::scene
