@@ -109,7 +109,7 @@ WELKIN_FN float atmosphereExponentialStep(float h0, float h1, float scale, float
 
 // Optical depth from h to space along mu. The ray must miss the ground.
 WELKIN_FN vec3 atmosphereOpticalDepth(Atmosphere a, float h, float mu) {
-  const int kSteps = 24;
+  const int kSteps = 16;
   float tEnd = atmosphereDistanceToSphere(a, h, mu, a.topAltitudeM);
   float tLow = clamp(-(a.seaRadiusM + h) * mu, 0.0f, tEnd);  // the lowest point; steps are short around it
   float rayleigh = 0.0f;
@@ -191,7 +191,7 @@ WELKIN_FN vec2 atmosphereMultipleScatteringParameters(Atmosphere a, float x, flo
 // lightDir in the frame of the point. The ground reflects diffusely.
 WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, float h, vec3 dir, vec3 lightDir,
                                      WELKIN_OUT(vec3) single, WELKIN_OUT(vec3) gathered) {
-  const int kSteps = 20;
+  const int kSteps = 16;
   float r = a.seaRadiusM + h;
   float tGround = atmosphereDistanceToGround(a, h, dir.z);
   float tEnd = tGround >= 0.0f ? tGround : atmosphereDistanceToSphere(a, h, dir.z, a.topAltitudeM);

@@ -60,21 +60,18 @@ struct Tap {
 };
 inline Tap tap(float u, int n, Wrap wrap) {
   const float x = u * static_cast<float>(n) - 0.5f;
-  const float f = std::floor(x);
-  Tap t{0, 0, x - f};
-  if (wrap == Wrap::kRepeat) {
-    const float period = f / static_cast<float>(n);
-    int i = static_cast<int>(f - std::floor(period) * static_cast<float>(n));
-    if (i >= n) i -= n;
-    if (i < 0) i += n;
-    t.i0 = i;
-    t.i1 = i + 1 == n ? 0 : i + 1;
-  } else {
+  if (wrap == Wrap::kClamp) {  // no floor() nor fmin(), which are calls on plain x86-64
     const float top = static_cast<float>(n - 1);
-    t.i0 = static_cast<int>(std::fmin(std::fmax(f, 0.0f), top));
-    t.i1 = static_cast<int>(std::fmin(std::fmax(f + 1.0f, 0.0f), top));
+    const float inside = x > 0.0f ? (x < top ? x : top) : 0.0f;
+    const int i = static_cast<int>(inside);
+    return {i, i + 1 < n ? i + 1 : i, inside - static_cast<float>(i)};
   }
-  return t;
+  const float f = std::floor(x);
+  const float period = std::floor(f / static_cast<float>(n));
+  int i = static_cast<int>(f - period * static_cast<float>(n));
+  if (i >= n) i -= n;
+  if (i < 0) i += n;
+  return {i, i + 1 == n ? 0 : i + 1, x - f};
 }
 inline vec4 load(const float* p, int channels) {
   vec4 v(0.0f, 0.0f, 0.0f, 1.0f);

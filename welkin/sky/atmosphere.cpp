@@ -42,6 +42,8 @@ Image<float> makeTransmittance(const shared::Atmosphere& a) {
 Image<float> makeMultipleScattering(const shared::Atmosphere& a, const Image<float>& transmittance) {
   const int size = static_cast<int>(shared::kMultipleScatteringSize);
   constexpr int kElevations = 8, kAzimuths = 4;  // azimuths over half a turn: the light's plane is a mirror
+  // A light so far down (20 degrees) reaches no air that is seen from air that is seen: the table stays 0.
+  constexpr float kDarkMu = -0.35f;
   const shared::sampler2D lut{&transmittance};
   Image<float> table(size, size, 3);
   parallelFor(static_cast<std::size_t>(size), 1, [&](std::size_t begin, std::size_t end) {
@@ -50,6 +52,7 @@ Image<float> makeMultipleScattering(const shared::Atmosphere& a, const Image<flo
         const vec2 p = shared::atmosphereMultipleScatteringParameters(
             a, static_cast<float>(i) / static_cast<float>(size - 1),
             static_cast<float>(j) / static_cast<float>(size - 1));
+        if (p.y < kDarkMu) continue;
         const vec3 light(std::sqrt(std::max(1.0f - p.y * p.y, 0.0f)), 0.0f, p.y);
         vec3 single(0.0f), gathered(0.0f);
         for (int e = 0; e < kElevations; ++e) {

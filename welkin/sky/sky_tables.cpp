@@ -18,6 +18,12 @@ void add(float* p, const vec3& v) {
   p[2] += v.z;
 }
 
+void store(float* p, const vec3& v) {
+  p[0] = v.x;
+  p[1] = v.y;
+  p[2] = v.z;
+}
+
 // Everything that the tables are made from.
 struct Job {
   shared::Atmosphere a;
@@ -28,15 +34,25 @@ struct Job {
   shared::AtmosphereLights lights;
 };
 
+// Columns to compute: all, or the first half where the picture is its own mirror image.
+int columnsOf(const Job& job, int width) {
+  const bool mirrored = job.lights.illuminance1.y <= 0.0f && job.lights.direction0 == job.direction0;
+  return mirrored ? (width + 1) / 2 : width;
+}
+
 void addSkyView(const Job& job, Image<float>& table) {
+  const int columns = columnsOf(job, table.width);
   parallelFor(static_cast<std::size_t>(table.height), 4, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
-      for (int i = 0; i < table.width; ++i) {
+      for (int i = 0; i < columns; ++i) {
         const vec2 p =
             shared::atmosphereSkyViewParameters(static_cast<float>(i), static_cast<float>(j), job.horizonMu);
         const vec3 dir = shared::atmosphereDirection(p.y, p.x, job.direction0);
-        add(&table.at(i, j), shared::atmosphereSkyRay(job.a, job.transmittance, job.multipleScattering,
-                                                      job.eyeM, dir, job.lights, 1.0f));
+        const vec3 luminance = shared::atmosphereSkyRay(job.a, job.transmittance, job.multipleScattering,
+                                                        job.eyeM, dir, job.lights, 1.0f);
+        add(&table.at(i, j), luminance);
+        const int mirror = table.width - 1 - i;
+        if (mirror >= columns) add(&table.at(mirror, j), luminance);
       }
     }
   });
@@ -45,11 +61,13 @@ void addSkyView(const Job& job, Image<float>& table) {
 void addAerial(const Job& job, Volume<float>& inscatterTable, Volume<float>& transmittanceTable) {
   constexpr int kStepsPerSlice = 2;
   const int nx = inscatterTable.nx, ny = inscatterTable.ny, nz = inscatterTable.nz;
+  const int columns = columnsOf(job, nx);
   parallelFor(static_cast<std::size_t>(ny), 1, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
       const float y = 2.0f * static_cast<float>(j) / static_cast<float>(ny - 1) - 1.0f;
       const float mu = shared::atmosphereYToMu(y, job.horizonMu);
-      for (int i = 0; i < nx; ++i) {
+      for (int i = 0; i < columns; ++i) {
+        const int mirror = nx - 1 - i;
         const float azimuth =
             shared::atmosphereXToAzimuth(static_cast<float>(i) / static_cast<float>(nx - 1));
         const vec3 dir = shared::atmosphereDirection(mu, azimuth, job.direction0);
@@ -65,24 +83,48 @@ void addAerial(const Job& job, Volume<float>& inscatterTable, Volume<float>& tra
             t0 = t1;
           }
           add(&inscatterTable.at(i, j, k), inscatter);
-          float* t = &transmittanceTable.at(i, j, k);
-          for (int c = 0; c < 3; ++c) t[c] = through[c];
+          store(&transmittanceTable.at(i, j, k), through);
+          if (mirror >= columns) {
+            add(&inscatterTable.at(mirror, j, k), inscatter);
+            store(&transmittanceTable.at(mirror, j, k), through);
+          }
         }
       }
     }
   });
 }
 
+// Lights without those that add less than a ten-thousandth to the sky: the moon by day, the sun at night.
+// Judged by the zenith, which is the darkest part of a sky lit by one light.
+std::vector<Light> lightsThatShow(const Atmosphere& atmosphere, double eyeAltitudeM,
+                                  const std::vector<Light>& lights) {
+  constexpr float kNegligible = 1e-4f;
+  std::vector<float> zenith;
+  float sum = 0.0f;
+  for (const Light& light : lights) {
+    zenith.push_back(atmosphere.skyLuminance(eyeAltitudeM, vec3(0, 0, 1), {light}).y);
+    sum += zenith.back();
+  }
+  const float airglow = atmosphere.skyLuminance(eyeAltitudeM, vec3(0, 0, 1), {}).y;
+  std::vector<Light> kept;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (zenith[i] - airglow > kNegligible * sum) kept.push_back(lights[i]);
+  }
+  return kept;
+}
+
 }  // namespace
 
-SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM, const std::vector<Light>& lights) {
+SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM,
+                        const std::vector<Light>& allLights) {
+  const std::vector<Light> lights = lightsThatShow(atmosphere, eyeAltitudeM, allLights);
   Job job;
   job.a = shared::fromUniforms(atmosphere.uniforms());
   job.transmittance = {&atmosphere.transmittance()};
   job.multipleScattering = {&atmosphere.multipleScattering()};
   job.eyeM = std::max(static_cast<float>(eyeAltitudeM), job.a.groundAltitudeM);
   job.horizonMu = shared::atmosphereHorizonMu(job.a, job.eyeM);
-  job.direction0 = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
+  job.direction0 = allLights.empty() ? vec3(1, 0, 0) : vec3(allLights[0].direction);
 
   SkyTables tables;
   tables.skyView =
