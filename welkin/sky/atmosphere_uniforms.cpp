@@ -42,7 +42,7 @@ constexpr double kAirglowAltitudeM = 90e3;
 // Haze is coloured where its particles are small and grey where they are fog: exponent 1.6 (dry continental
 // haze) at 20 km of visibility and beyond, 0 at 1 km.
 double angstromExponent(double visibilityM) {
-  return 1.6 * std::clamp(std::log(std::max(visibilityM, 1.0) / 1e3) / std::log(20.0), 0.0, 1.0);
+  return 1.8 * std::clamp(std::log(std::max(visibilityM, 1.0) / 1e3) / std::log(20.0), 0.0, 1.0);
 }
 
 // The thicker the haze, the shallower: a 100 m fog is not 2 km deep. Under 20 km the height goes with a power
