@@ -6,14 +6,13 @@
 #include <filesystem>
 
 #include "usage_error.h"
-#include "welkin/scene/param_docs.h"
 #include "welkin/scene/param_json.h"
 #include "welkin/scene/scene_file.h"
 
 namespace welkin::app {
 
 int runHelpScene(const HelpSceneArgs& args) {
-  const auto docs = scene::documentParams<scene::Scene>();
+  const auto docs = scene::documentSceneFile();
   if (args.markdown)
     fmt::print("{}", scene::markdownTable(docs));
   else

@@ -4,40 +4,37 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "render_settings.h"
 #include "welkin/core/image.h"
+#include "welkin/io/frame_path.h"
+#include "welkin/io/video.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::app {
 
-// Throws IoError, before anything is computed, when a file could not be created at `path`.
+// Throws IoError when a file could not be created at `path`; leaves nothing behind.
 void checkWritable(const std::string& path);
-
-// Writes the text of a report. Throws IoError.
-void writeReport(const std::string& path, const std::string& json);
 
 class PictureWriter {
  public:
-  // Throws IoError for a video where ffmpeg is missing, UsageError for a pattern without a place for one
-  // number.
+  // Meant to be made before anything is computed. Throws IoError where nothing can be written or ffmpeg is
+  // missing, UsageError for a name or a size that the kind of file does not take.
   explicit PictureWriter(const RenderSettings& settings);
-  ~PictureWriter();  // a video that was not finished is removed
-  PictureWriter(const PictureWriter&) = delete;
-  PictureWriter& operator=(const PictureWriter&) = delete;
 
   // luminance: cd/m2. Returns the path of the picture, empty for a frame of a video. Throws IoError.
   std::string write(std::int64_t frame, const Image<float>& luminance, double exposureEv,
                     const scene::SkyState& state);
 
-  // Completes a video.
+  // Completes a video; without it none appears.
   void finish();
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  const RenderSettings& settings_;
+  std::optional<io::FramePattern> pattern_;
+  std::optional<io::VideoWriter> video_;
 };
 
 }  // namespace welkin::app

@@ -11,7 +11,7 @@
 #include "render_settings.h"
 #include "report.h"
 #include "welkin/core/parallel.h"
-#include "welkin/render/display.h"
+#include "welkin/io/atomic_file.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
@@ -101,10 +101,9 @@ class Sequence {
 
 int runRender(const RenderArgs& args) {
   const RenderSettings settings = renderSettings(args);
-  checkWritable(settings.out);
   if (!settings.report.empty()) checkWritable(settings.report);
   const RenderReport report = Sequence(settings).draw();
-  if (!settings.report.empty()) writeReport(settings.report, reportJson(settings, report));
+  if (!settings.report.empty()) io::writeTextFile(settings.report, reportJson(settings, report));
   return 0;
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "usage_error.h"
+#include "welkin/io/frame_path.h"
+#include "welkin/io/video.h"
 #include "welkin/scene/param_text.h"
 #include "welkin/scene/scene_file.h"
 
@@ -66,14 +68,21 @@ void checkRenderer(const RenderArgs& a) {
     throw UsageError("--spp belongs to the reference renderer, which is not available in this version");
 }
 
-OutputKind kindOf(const std::string& out) {
-  const std::string extension = std::filesystem::path(out).extension().string();
-  if (extension == ".png") return OutputKind::kPng;
-  if (extension == ".exr") return OutputKind::kExr;
-  if (extension == ".hdr") return OutputKind::kHdr;
-  if (extension == ".mp4" || extension == ".webm") return OutputKind::kVideo;
-  throw UsageError(out + ": " + (extension.empty() ? "no extension" : "unknown extension " + extension) +
-                   "; expected .png, .exr, .hdr, .mp4 or .webm");
+// What the name of the output says about its kind.
+void setOutput(RenderSettings& r, const std::string& out) {
+  r.out = out;
+  r.video = io::isVideoPath(out);
+  r.numbered = io::isFramePattern(out);
+  if (r.video && r.numbered)
+    throw UsageError(out + ": a video has no place for a frame number; expected a name without %");
+  if (r.video) return;
+  try {
+    r.format = io::imageFormatOf(out);
+  } catch (const ParameterError&) {
+    const std::string extension = std::filesystem::path(out).extension().string();
+    throw UsageError(out + ": " + (extension.empty() ? "no extension" : "unknown extension " + extension) +
+                     "; expected .png, .exr, .hdr, .mp4 or .webm");
+  }
 }
 
 }  // namespace
@@ -87,18 +96,16 @@ RenderSettings renderSettings(const RenderArgs& a) {
   checkRenderer(a);
   RenderSettings r;
   if (!a.out) throw UsageError("render: expected -o OUT, the file to write");
-  r.out = *a.out;
-  r.kind = kindOf(r.out);
-  r.numbered = std::filesystem::path(r.out).filename().string().find('%') != std::string::npos;
-  if (r.numbered && r.kind == OutputKind::kVideo)
-    throw UsageError(r.out + ": a video has no place for a frame number; expected a name without %");
+  setOutput(r, *a.out);
   if (a.bits) {
     r.pngBits = wholeNumber("--bits", *a.bits, 8, 16);
     if (r.pngBits != 8 && r.pngBits != 16) throw UsageError("--bits is " + *a.bits + "; expected 8 or 16");
-    if (r.kind != OutputKind::kPng) throw UsageError("--bits is for .png only");
+    if (r.video || r.format != io::ImageFormat::kPng) throw UsageError("--bits is for .png only");
   }
   if (a.threads) r.threads = wholeNumber("--threads", *a.threads, 1, 1024);
   if (a.report) r.report = *a.report;
+  if (r.report == r.out)
+    throw UsageError("--report: " + r.report + " is the picture already; expected another name");
 
   // The place first: what is typical of a layer in the file depends on the latitude.
   Scene flagged;
@@ -141,7 +148,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     if (a.size || a.projection || !a.scene) throw UsageError(e.what());
     throw ParameterError(*a.scene + ": " + e.what());
   }
-  if (s.output.frames > 1 && !r.numbered && r.kind != OutputKind::kVideo)
+  if (s.output.frames > 1 && !r.numbered && !r.video)
     throw UsageError(
         r.out + ": " + std::to_string(s.output.frames) +
         " frames need a place for their number; expected a name such as name_%04d.png, or a video");

@@ -6,20 +6,20 @@
 #include <string>
 
 #include "command_line.h"
+#include "welkin/io/write_image.h"
 #include "welkin/scene/scene.h"
 
 namespace welkin::app {
 
-enum class OutputKind { kPng, kExr, kHdr, kVideo };
-
 struct RenderSettings {
   scene::Scene scene;
-  std::string out;  // path or, for several pictures, a pattern with %d or %04d
-  OutputKind kind = OutputKind::kPng;
-  bool numbered = false;  // `out` is a pattern
-  std::string report;     // empty: none
-  int pngBits = 8;        // 8 or 16
-  int threads = 0;        // 0: all
+  std::string out;                                 // path or, for several pictures, a pattern with %d or %04d
+  bool video = false;                              // .mp4 or .webm
+  io::ImageFormat format = io::ImageFormat::kPng;  // when it is no video
+  bool numbered = false;                           // `out` is a pattern
+  std::string report;                              // empty: none
+  int pngBits = 8;                                 // 8 or 16
+  int threads = 0;                                 // 0: all
 };
 
 // Sets place.* from "LAT,LON[,ALT_M]"; `flag` stands in messages.

@@ -89,11 +89,10 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::vector<std::pair<std::string, std::string>> pictureMetadata(const scene::SkyState& s,
-                                                                 double exposureEv) {
+std::map<std::string, std::string> pictureMetadata(const scene::SkyState& s, double exposureEv) {
   const scene::Place& p = s.scene.place;
-  std::vector<std::pair<std::string, std::string>> m{
-      {"welkin_version", WELKIN_VERSION},
+  std::map<std::string, std::string> m{
+      {"Software", "welkin " WELKIN_VERSION},
       {"welkin_time", formatUtcTime(s.time)},
       {"welkin_place", scene::numberText(p.latitudeDeg) + "," + scene::numberText(p.longitudeDeg) + "," +
                            scene::numberText(p.altitudeM)},
@@ -103,7 +102,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const scene::Sk
       {"welkin_heading_deg", scene::numberText(s.headingDeg)},
       {"welkin_exposure_ev", scene::numberText(exposureEv)},
       {"welkin_sun_disc", s.scene.output.sunDisc ? "true" : "false"}};
-  if (s.scene.metar) m.emplace_back("welkin_metar", *s.scene.metar);
+  if (s.scene.metar) m.emplace("welkin_metar", *s.scene.metar);
   return m;
 }
 

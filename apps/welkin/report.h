@@ -2,6 +2,7 @@
 // `--report`: what was asked, what was delivered and what it cost, as JSON.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,8 @@ struct RenderReport {
 // The JSON text of the report.
 std::string reportJson(const RenderSettings& settings, const RenderReport& report);
 
-// Name, value: what a picture file says about itself.
-std::vector<std::pair<std::string, std::string>> pictureMetadata(const scene::SkyState& state,
-                                                                 double exposureEv);
+// What a picture file says about itself: key and text.
+std::map<std::string, std::string> pictureMetadata(const scene::SkyState& state, double exposureEv);
 
 // The most memory that this process has held so far.
 double peakRssMib();

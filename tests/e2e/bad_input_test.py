@@ -35,7 +35,7 @@ class SceneFiles(ProgramTest):
 
     def test_layer_upside_down(self):
         self.write("s.toml", '[[layer]]\ngenus = "cumulus"\nbase_m = 2000\ntop_m = 1000\n')
-        self.fail_with(1, "s.toml: layer 1: top_m is not above base_m", "render", "s.toml", "-o", "x.png")
+        self.fail_with(1, "s.toml: layer of cumulus: top_m must be above base_m", "render", "s.toml", "-o", "x.png")
 
     def test_missing_and_folder(self):
         self.fail_with(1, "none.toml: cannot be opened: No such file", "render", "none.toml", "-o", "x.png")
@@ -82,23 +82,29 @@ class Outputs(ProgramTest):
         self.fail_with(2, "picture: no extension", "render", "-o", "picture")
 
     def test_missing_folder(self):
-        self.fail_with(1, "none/x.png: there is no folder none", "render", *CUMULUS, *TINY, "-o", "none/x.png")
-        self.fail_with(1, "none/r.json: there is no folder none", "render", *CUMULUS, *TINY, "-o", "x.png", "--report",
+        self.fail_with(1, "cannot write none/x.png: No such file or directory", "render", *CUMULUS, *TINY, "-o", "none/x.png")
+        self.fail_with(1, "cannot write none/r.json: No such file or directory", "render", *CUMULUS, *TINY, "-o", "x.png", "--report",
                        "none/r.json")
 
     def test_unwritable_folder(self):
         # Even the superuser cannot create files here.
-        self.fail_with(1, "/proc/x.png: ", "render", *CUMULUS, *TINY, "-o", "/proc/x.png")
+        self.fail_with(1, "cannot write /proc/x.png: ", "render", *CUMULUS, *TINY, "-o", "/proc/x.png")
 
     def test_folder_without_permission(self):
         if os.geteuid() == 0:
             self.skipTest("permissions do not hold the superuser back")
         os.mkdir(self.folder / "locked", 0o555)
-        self.fail_with(1, "locked/x.png: the folder locked cannot be written", "render", *CUMULUS, *TINY, "-o", "locked/x.png")
+        self.fail_with(1, "cannot write locked/x.png: Permission denied", "render", *CUMULUS, *TINY, "-o", "locked/x.png")
 
     def test_output_is_a_folder(self):
         os.mkdir(self.folder / "x.png")
-        self.fail_with(1, "x.png: is a folder", "render", *CUMULUS, *TINY, "-o", "x.png")
+        self.fail_with(1, "cannot write x.png: Is a directory", "render", *CUMULUS, *TINY, "-o", "x.png")
+
+    def test_odd_sized_video(self):
+        self.fail_with(2, "expected even width and height", "render", *CUMULUS, "--size", "97x55", "-o", "x.mp4")
+
+    def test_report_over_the_picture(self):
+        self.fail_with(2, "--report: x.png is the picture already", "render", "-o", "x.png", "--report", "x.png")
 
     def test_bad_patterns(self):
         for pattern in ("x_%s.png", "x_%d_%d.png", "x_%n.png", "x_%.png", "x_%99999d.png"):

@@ -114,6 +114,14 @@ std::string plainTable(std::span<const ParamDoc> rows, int columns) {
   return out.str();
 }
 
+namespace {
+
+bool isWord(const ParamDoc& r) {
+  return r.defaultValue == "absent" || r.defaultValue == "typical";
+}
+
+}  // namespace
+
 std::string markdownTable(std::span<const ParamDoc> rows) {
   const auto cell = [](std::string text) {
     for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
@@ -129,8 +137,7 @@ std::string markdownTable(std::span<const ParamDoc> rows) {
     }
     group = &r.group;
     out << "| `" << r.key << "` | " << cell(r.type) << " | " << r.range << " | " << r.unit << " | "
-        << (r.defaultValue == "absent" ? "absent" : "`" + r.defaultValue + "`") << " | " << cell(r.meaning)
-        << " |\n";
+        << (isWord(r) ? r.defaultValue : "`" + r.defaultValue + "`") << " | " << cell(r.meaning) << " |\n";
   }
   return out.str();
 }

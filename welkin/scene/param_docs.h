@@ -19,9 +19,10 @@ struct ParamDoc {
   std::string key;           // the last part of the path
   std::string
       type;  // "number", "whole number", "text", "time", "true or false", "3 numbers", or the choices "a | b"
-  std::string unit;          // empty for pure numbers, texts and choices
-  std::string range;         // "-90 to 90", without the unit; empty when everything is allowed
-  std::string defaultValue;  // as it stands in a scene file; "absent" for optional ones that are not set
+  std::string unit;   // empty for pure numbers, texts and choices
+  std::string range;  // "-90 to 90", without the unit; empty when everything is allowed
+  std::string
+      defaultValue;  // as it stands in a scene file; a word such as "absent" where there is no fixed value
   std::string meaning;
 };
 

@@ -88,11 +88,10 @@ void validate(const Scene& s) {
     throw ParameterError("size " + size +
                          " does not fit a cubemap; expected six square faces side by side, " +
                          std::to_string(6 * h) + "x" + std::to_string(h) + " for instance");
-  for (std::size_t i = 0; i < s.layers.size(); ++i) {
-    const weather::Layer& l = s.layers[i];
-    if (!(l.topM > l.baseM))
-      throw ParameterError("layer " + std::to_string(i + 1) + ": top_m is not above base_m");
-  }
+  if (s.layers.size() > weather::kMaxLayers)
+    throw ParameterError("there are " + std::to_string(s.layers.size()) + " layers; expected at most " +
+                         std::to_string(weather::kMaxLayers));
+  for (const weather::Layer& layer : s.layers) weather::validate(layer);
 }
 
 PictureSize naturalSize(Projection projection) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole description of a picture: place, time, weather, eye, picture. What a scene file says and the command line overrides.
+// The whole description of a picture: place, time, weather, eye, picture. What a scene file says and the
+// command line overrides.
 #pragma once
 
 #include <array>
@@ -16,9 +17,9 @@
 namespace welkin::scene {
 
 struct Place {
-  double latitudeDeg = 47.46;   // north positive
-  double longitudeDeg = 8.55;   // east positive
-  double altitudeM = 0.0;       // of the ground above mean sea level
+  double latitudeDeg = 47.46;  // north positive
+  double longitudeDeg = 8.55;  // east positive
+  double altitudeM = 0.0;      // of the ground above mean sea level
 };
 void describe(Place& p, ParamVisitor& v);
 
@@ -26,10 +27,11 @@ enum class Projection { kPerspective, kFisheye, kEquirect, kCubemap };
 
 // Where the eye is and what it sees. The eye stands over the place.
 struct Camera {
-  double eyeM = 2.0;                    // above the ground
-  std::optional<double> headingDeg;     // clockwise from north; absent: 60 degrees right of the brighter of sun and moon
-  double pitchDeg = 12.0;               // above the horizon
-  double fovDeg = 70.0;                 // across the width of a perspective picture
+  double eyeM = 2.0;  // above the ground
+  std::optional<double>
+      headingDeg;          // clockwise from north; absent: 60 degrees right of the brighter of sun and moon
+  double pitchDeg = 12.0;  // above the horizon
+  double fovDeg = 70.0;    // across the width of a perspective picture
   Projection projection = Projection::kPerspective;
 };
 void describe(Camera& c, ParamVisitor& v);
@@ -37,30 +39,30 @@ void describe(Camera& c, ParamVisitor& v);
 enum class Quality { kLow, kMedium, kHigh, kUltra };
 
 struct Output {
-  std::int64_t width = 1280;             // pixels
+  std::int64_t width = 1280;  // pixels
   std::int64_t height = 720;
   Quality quality = Quality::kMedium;
-  std::optional<double> exposureEv;      // EV at ISO 100; absent: automatic
-  bool sunDisc = true;                   // draw the discs of sun and moon; false leaves their light out of an environment map
+  std::optional<double> exposureEv;  // EV at ISO 100; absent: automatic
+  bool sunDisc = true;  // draw the discs of sun and moon; false leaves their light out of an environment map
   std::int64_t frames = 1;
-  double fps = 24.0;                     // frames a second of video
-  double speed = 60.0;                   // simulated seconds for each second of video
+  double fps = 24.0;    // frames a second of video
+  double speed = 60.0;  // simulated seconds for each second of video
 };
 void describe(Output& o, ParamVisitor& v);
 
 struct Ground {
-  glm::dvec3 albedo{0.13, 0.14, 0.09};   // linear Rec. 709
+  glm::dvec3 albedo{0.13, 0.14, 0.09};  // linear Rec. 709
 };
 void describe(Ground& g, ParamVisitor& v);
 
 struct Scene {
   Place place;
-  UtcTime time;                          // the moment at which the weather is as described
-  double atS = 0.0;                      // seconds after `time` at which the (first) picture is taken
+  UtcTime time;      // the moment at which the weather is as described
+  double atS = 0.0;  // seconds after `time` at which the (first) picture is taken
   std::int64_t seed = 1;
-  std::optional<std::string> metar;      // the weather as a report; wins over `layers`
-  std::optional<double> visibilityM;     // absent: from the report, else 40 km
-  std::vector<weather::Layer> layers;    // the weather by hand
+  std::optional<std::string> metar;    // the weather as a report; wins over `layers`
+  std::optional<double> visibilityM;   // absent: from the report, else 40 km
+  std::vector<weather::Layer> layers;  // the weather by hand
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
@@ -68,7 +70,8 @@ struct Scene {
 };
 void describe(Scene& s, ParamVisitor& v);
 
-// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases. Throws ParameterError.
+// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases. Throws
+// ParameterError.
 void validate(const Scene& s);
 
 // The size of a picture in this projection when nobody asked for one.

@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include "welkin/core/error.h"
-#include "welkin/scene/param_docs.h"
 #include "welkin/scene/param_text.h"
 
 namespace welkin::scene {
@@ -317,6 +316,13 @@ SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeD
   if (in.peek() != std::ifstream::traits_type::eof()) text << in.rdbuf();
   if (!text || in.bad()) throw IoError(path + ": cannot be read");
   return parseScene(text.str(), path, latitudeDeg);
+}
+
+std::vector<ParamDoc> documentSceneFile() {
+  std::vector<ParamDoc> rows = documentParams<Scene>();
+  for (ParamDoc& row : rows)
+    if (row.group == "[[layer]]" && row.key != "genus" && row.key != "oktas") row.defaultValue = "typical";
+  return rows;
 }
 
 std::string sceneToToml(const Scene& scene) {

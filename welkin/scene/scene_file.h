@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "welkin/scene/param_docs.h"
 #include "welkin/scene/scene.h"
 
 namespace welkin::scene {
@@ -31,6 +32,9 @@ SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeD
 
 // The same from memory; `name` stands for the file in messages.
 SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {});
+
+// Every key of a scene file, with what is taken when the file does not have it.
+std::vector<ParamDoc> documentSceneFile();
 
 // A scene file that reads back as the same scene; every key is written but those that are absent.
 std::string sceneToToml(const Scene& scene);

@@ -175,6 +175,10 @@ TEST(Validate, RefusesWhatNoSingleRangeCan) {
   s.layers.resize(1);
   s.layers[0].topM = s.layers[0].baseM;
   EXPECT_THROW(validate(s), ParameterError);
+  s.layers.assign(weather::kMaxLayers, weather::Layer{});
+  EXPECT_NO_THROW(validate(s));
+  s.layers.emplace_back();
+  EXPECT_THROW(validate(s), ParameterError);
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "welkin/core/error.h"
-#include "welkin/scene/param_docs.h"
 #include "welkin/scene/param_json.h"
 
 namespace welkin::scene {
@@ -207,11 +207,21 @@ TEST(SceneFile, ExamplesAreValid) {
   EXPECT_GE(count, 3);
 }
 
-// docs/scene_file.md holds what `welkin help scene --markdown` prints.
+// docs/scene_file.md holds what `welkin help scene --markdown` prints. WELKIN_REFRESH=1 in the environment
+// writes it anew.
 TEST(SceneFile, DocumentationIsUpToDate) {
-  const std::string doc = readFile(WELKIN_SOURCE_DIR "/docs/scene_file.md");
-  EXPECT_NE(doc.find(markdownTable(documentParams<Scene>())), std::string::npos)
-      << "replace the tables in docs/scene_file.md by the output of `welkin help scene --markdown`";
+  const std::string path = WELKIN_SOURCE_DIR "/docs/scene_file.md", begin = "--markdown -->\n",
+                    end = "<!-- end -->";
+  std::string doc = readFile(path);
+  const std::size_t from = doc.find(begin), to = doc.find(end);
+  ASSERT_TRUE(from != std::string::npos && to != std::string::npos);
+  const std::string table = "\n" + markdownTable(documentSceneFile()) + "\n";
+  const std::size_t first = from + begin.size();
+  if (std::getenv("WELKIN_REFRESH") != nullptr)
+    std::ofstream(path) << doc.replace(first, to - first, table);
+  else
+    EXPECT_EQ(doc.substr(first, to - first), table)
+        << "run this test with WELKIN_REFRESH=1 in the environment";
 }
 
 // The TOML example inside the documentation is read as well.
