@@ -32,6 +32,9 @@ bool skipDigitsOrSolidi(Cursor& c, std::size_t count) {
 // The fastest gust on record is 113 m/s (Barrow Island, 1996); anything above this is a slip of the key.
 constexpr double kMaxWindMps = 130.0;
 
+// No cloud of the weather has its base above 18 km (high clouds of the tropics, WMO Cloud Atlas).
+constexpr int kMaxHundredsOfFeet = 600;
+
 // Signed tenths of the T group: a 1 stands for minus (FMH-1, 12.7.2.c).
 bool signedTenths(Cursor& c, std::optional<double>& value) {
   const auto sign = c.digits(1);
@@ -363,6 +366,7 @@ std::optional<MetarLayer> readLayer(std::string_view text) {
   const bool unknownCover = layer.cover == MetarCover::kUnknown;
   std::optional<int> hundredsOfFeet;
   if (digitsOrSolidi(c, 3, hundredsOfFeet)) {
+    if (hundredsOfFeet.value_or(0) > kMaxHundredsOfFeet) return {};
     if (hundredsOfFeet) layer.baseFt = *hundredsOfFeet * 100;
   } else if (!unknownCover || c.done()) {
     return {};  // only an unknown amount may go without a height: the French ///CB

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,16 @@ struct Layer {
   bool baseAssumed = false;          // the report did not give the base; it is climatological
 };
 void describe(Layer& layer, ParamVisitor& v);
+
+// Throws ParameterError when the values contradict one another (a top that is not above its base) or are out of range.
+void validate(const Layer& layer);
+
+// A layer of the genus as it is most often met at the latitude (degrees, either sign): heights, extinction, size of droplets or
+// crystals, and wind are typical, the cover is the struct's default. See genus.h.
+Layer typicalLayer(Genus genus, double latitudeDeg);
+
+// Most layers that a Weather has.
+inline constexpr std::size_t kMaxLayers = 8;
 
 enum class PrecipitationKind { kNone, kDrizzle, kRain, kSnow, kIcePellets, kHail };
 

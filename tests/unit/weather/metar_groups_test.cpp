@@ -195,7 +195,7 @@ TEST(MetarGroups, Clouds) {
   }
   expectAll(false, readLayer,
             {"FEW", "FEW2000", "SCT10000", "FEW018SCT080", "BKN0140", "BKN01O", "OVC0/0", "FEW020CI", "///",
-             "////", "VV002", "CB", "SCT020TC", "FEW020CB/", "NSC"});
+             "////", "VV002", "CB", "SCT020TC", "OVC999", "FEW020CB/", "NSC"});
   EXPECT_EQ(readVerticalVisibility("VV002")->feet, 200);
   ASSERT_TRUE(readVerticalVisibility("VV///"));
   EXPECT_FALSE(readVerticalVisibility("VV///")->feet);

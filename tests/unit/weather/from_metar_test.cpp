@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// From reports to weather: what must be there, what must not, and that it is the same every time.
+#include "welkin/weather/from_metar.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "welkin/core/error.h"
+#include "welkin/core/units.h"
+#include "welkin/weather/choose_genus.h"
+#include "welkin/weather/genus.h"
+#include "welkin/weather/wind.h"
+
+namespace welkin::weather {
+namespace {
+
+Weather weatherOf(std::string_view report, double latitudeDeg = 47.0, int month = 6,
+                  double solarHour = 13.0) {
+  return weatherFromMetar(parseMetar(report).metar, latitudeDeg, month, solarHour);
+}
+
+std::vector<Genus> generaOf(const Weather& w) {
+  std::vector<Genus> genera;
+  for (const Layer& l : w.layers) genera.push_back(l.genus);
+  return genera;
+}
+
+bool anyNote(const Weather& w, std::string_view part) {
+  return std::any_of(w.notes.begin(), w.notes.end(),
+                     [&](const std::string& n) { return n.find(part) != std::string::npos; });
+}
+
+TEST(FromMetar, ClearSkiesInventNoLayer) {
+  for (const char* sky : {"9999 SKC", "9999 CLR", "9999 NSC", "9999 NCD", "CAVOK", "9999", "9999 //////"}) {
+    const Weather w = weatherOf("LSZH 211200Z 24005KT " + std::string(sky) + " 20/10 Q1015");
+    EXPECT_TRUE(w.layers.empty()) << sky;
+    EXPECT_EQ(w.requestedOktas, 0.0) << sky;
+  }
+  EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 ////// 20/10 Q1015"), "cannot observe"));
+}
+
+TEST(FromMetar, BasesAndCoverAreThoseOfTheReport) {
+  const Weather w = weatherOf("LSZH 211200Z 24005KT 9999 FEW020 SCT045 BKN250 20/14 Q1015");
+  ASSERT_EQ(w.layers.size(), 3u);
+  EXPECT_NEAR(w.layers[0].baseM, 2000 * kMetresPerFoot, 1e-9);
+  EXPECT_NEAR(w.layers[1].baseM, 4500 * kMetresPerFoot, 1e-9);
+  EXPECT_NEAR(w.layers[2].baseM, 25000 * kMetresPerFoot, 1e-9);
+  EXPECT_NEAR(w.layers[0].oktas, 1.5, 1e-9);
+  EXPECT_NEAR(w.layers[2].oktas, 8.0 * 2.5 / 4.5, 1e-9);
+  EXPECT_EQ(w.requestedOktas, 6.0);
+  EXPECT_FALSE(w.layers[0].baseAssumed);
+}
+
+TEST(FromMetar, GenusFollowsFromHeightAmountAndWeather) {
+  struct Case {
+    const char* report;
+    double latitudeDeg;
+    int month;
+    double solarHour;
+    std::vector<Genus> wanted;
+  };
+  using enum Genus;
+  const Case cases[] = {
+      {"LSZH 211200Z 24005KT 9999 SCT040 22/12 Q1015", 47, 6, 13, {kCumulus}},        // a summer's day
+      {"LSZH 210000Z 24005KT 9999 SCT040 12/10 Q1015", 47, 6, 1, {kStratocumulus}},   // its night
+      {"LSZH 211200Z 24005KT 9999 SCT040 02/M08 Q1015", 47, 1, 9, {kStratocumulus}},  // a winter's morning
+      {"TBPB 210000Z 09012KT 9999 SCT018 26/22 Q1013", 13, 6, 1, {kCumulus}},  // trade cumulus at night
+      {"LSZH 211200Z 24005KT 9999 BKN030 15/10 Q1015", 47, 6, 13, {kStratocumulus}},
+      {"LSZH 211200Z 24005KT 5000 BR OVC006 08/07 Q1015", 47, 11, 13, {kStratus}},
+      {"LSZH 211200Z 24005KT 4000 -DZ OVC008 08/07 Q1015", 47, 11, 13, {kStratus}},
+      {"LSZH 211200Z 24005KT 6000 RA SCT010 OVC040 08/07 Q1005", 47, 11, 13, {kStratus, kNimbostratus}},
+      {"LSZH 211200Z 24005KT 9999 -SHRA SCT030 08/04 Q1005", 47, 4, 13, {kCumulus}},
+      {"LSZH 211200Z 24005KT 9999 FEW030CB SCT040 BKN100 20/14 Q1012",
+       47,
+       6,
+       13,
+       {kCumulonimbus, kCumulus, kAltocumulus}},
+      {"LSZH 211200Z 24005KT 9999 FEW030TCU 20/14 Q1012", 47, 6, 13, {kCumulus}},
+      {"LSZH 211200Z 24005KT 9999 BKN120 20/10 Q1012", 47, 6, 13, {kAltocumulus}},
+      {"LSZH 211200Z 24005KT 9999 OVC120 20/10 Q1012", 47, 6, 13, {kAltostratus}},
+      {"LSZH 211200Z 24005KT 9999 FEW280 20/10 Q1012", 47, 6, 13, {kCirrus}},
+      {"LSZH 211200Z 24005KT 9999 OVC280 20/10 Q1012", 47, 6, 13, {kCirrostratus}},
+      {"KBVU 262115Z 16023KT 10SM SCT085 35/13 A2978", 36, 7, 14, {kCumulus}},  // over the desert
+      {"ENSB 211200Z 24005KT 9999 BKN140 M10/M15 Q1012",
+       78,
+       3,
+       12,
+       {kCirrostratus}},  // high cloud hangs low there
+      {"WSSS 211200Z 24005KT 9999 BKN220 28/24 Q1010", 1, 3, 12, {kAltocumulus}},  // and here not
+  };
+  for (const Case& c : cases) {
+    EXPECT_EQ(generaOf(weatherOf(c.report, c.latitudeDeg, c.month, c.solarHour)), c.wanted) << c.report;
+  }
+}
+
+TEST(FromMetar, DepthsGrowWithTheName) {
+  const auto depth = [](const char* sky, double latitudeDeg) {
+    const Weather w =
+        weatherOf("LSZH 211200Z 24005KT 9999 " + std::string(sky) + " 22/16 Q1012", latitudeDeg);
+    return w.layers.at(0).topM - w.layers.at(0).baseM;
+  };
+  EXPECT_LT(depth("FEW025", 47), depth("SCT025", 47));
+  EXPECT_LT(depth("SCT025", 47), depth("SCT025TCU", 47));
+  EXPECT_LT(depth("SCT025TCU", 47), depth("SCT025CB", 47));
+  EXPECT_LT(depth("SCT025CB", 70), depth("SCT025CB", 47));
+  EXPECT_LT(depth("SCT025CB", 47), depth("SCT025CB", 5));
+}
+
+TEST(FromMetar, ASheetEndsBelowTheNext) {
+  const Weather w = weatherOf("LSZH 211200Z 24005KT 9999 BKN020 OVC024 10/09 Q1012", 47, 11, 8);
+  ASSERT_EQ(w.layers.size(), 2u);
+  EXPECT_LT(w.layers[0].topM, w.layers[1].baseM);
+}
+
+TEST(FromMetar, VerticalVisibilityObscuresTheSky) {
+  const Weather w = weatherOf("LOAN 231100Z 10006KT 0400 FG VV002 03/03 Q1020");
+  ASSERT_EQ(w.layers.size(), 1u);
+  const Layer& fog = w.layers[0];
+  EXPECT_EQ(fog.genus, Genus::kFog);
+  EXPECT_EQ(fog.baseM, 0.0);
+  EXPECT_EQ(fog.oktas, 8.0);
+  EXPECT_EQ(w.requestedOktas, 8.0);
+  EXPECT_NEAR(std::exp(-fog.extinctionPerM * 400.0), 0.05, 1e-4) << "visibility is where 5 % is left";
+  EXPECT_GE(fog.topM, 200 * kMetresPerFoot);
+  EXPECT_GT(fog.extinctionPerM * fog.topM, 5.0) << "the sun's disc is hidden";
+  EXPECT_GE(w.visibilityM, 5000.0) << "haze is not fog";
+  EXPECT_EQ(weatherOf("PANN 231053Z 00000KT 1/4SM +SN VV/// M02/M02 A2994").requestedOktas, 8.0);
+}
+
+TEST(FromMetar, FogUnderAReportedSkyIsShallow) {
+  const Weather w = weatherOf("LIBV 222355Z 19001KT 0300 FG NSC 16/16 Q1022");
+  ASSERT_EQ(w.layers.size(), 1u);
+  EXPECT_EQ(w.layers[0].genus, Genus::kFog);
+  EXPECT_LT(w.layers[0].topM * w.layers[0].extinctionPerM, 0.3) << "the zenith is seen through it";
+  EXPECT_LT(w.requestedOktas, 2.0);
+  EXPECT_EQ(weatherOf("LIBV 222355Z 19001KT 0300 FG 16/16 Q1022").requestedOktas, 8.0)
+      << "no sky reported: none seen";
+  EXPECT_EQ(weatherOf("LIBV 222355Z 19001KT 0300 FG OVC002 16/16 Q1022").requestedOktas, 8.0);
+  const double full = weatherOf("LIBV 222355Z 19001KT 3000 PRFG NSC 16/16 Q1022").requestedOktas;
+  const double patches = weatherOf("LIBV 222355Z 19001KT 3000 BCFG NSC 16/16 Q1022").requestedOktas;
+  EXPECT_GT(full, patches);
+  EXPECT_GT(patches, 0.0);
+  EXPECT_LE(weatherOf("LIBV 222355Z 19001KT 3000 MIFG NSC 16/16 Q1022").layers[0].topM, 2.0);
+  EXPECT_TRUE(weatherOf("LIBV 222355Z 19001KT 9999 VCFG NSC 16/16 Q1022").layers.empty());
+}
+
+TEST(FromMetar, MissingBasesAreClimatologicalAndSaidToBe) {
+  const Weather overcast = weatherOf("LSZH 211200Z 24005KT 9999 OVC/// 12/08 Q1015");
+  ASSERT_EQ(overcast.layers.size(), 1u);
+  EXPECT_TRUE(overcast.layers[0].baseAssumed);
+  EXPECT_EQ(overcast.layers[0].oktas, 8.0);
+  EXPECT_TRUE(anyNote(overcast, "assumed"));
+
+  const Weather storm = weatherOf("EGLC 231120Z AUTO 14006KT 9999 SCT026/// //////CB 17/12 Q1001");
+  ASSERT_EQ(storm.layers.size(), 2u);
+  const Layer& cb = storm.layers[0];  // 625 m by Espy's rule, below 2,600 ft
+  EXPECT_EQ(cb.genus, Genus::kCumulonimbus);
+  EXPECT_TRUE(cb.baseAssumed);
+  EXPECT_NEAR(cb.baseM, 625.0, 1e-9);
+  EXPECT_TRUE(anyNote(storm, "without its base"));
+  EXPECT_TRUE(anyNote(storm, "without its amount"));
+
+  const Weather unseenRain = weatherOf("LFBL 231130Z AUTO 16011KT 9999 RA ////// 19/14 Q1009");
+  ASSERT_EQ(unseenRain.layers.size(), 1u) << "rain falls from somewhere";
+  EXPECT_TRUE(unseenRain.layers[0].baseAssumed);
+}
+
+TEST(FromMetar, ThunderMakesAStorm) {
+  const Weather w = weatherOf("SVBI 262100Z 02003KT 9999 TSRA SCT017 BKN100 23/19 Q1008", 8.0);
+  EXPECT_TRUE(w.thunder);
+  EXPECT_EQ(w.layers.at(0).genus, Genus::kCumulonimbus);
+  EXPECT_TRUE(anyNote(w, "Thunder"));
+  EXPECT_FALSE(weatherOf("KSOW 262115Z 19013KT 10SM VCTS BKN060 25/09 A3018").thunder);
+  EXPECT_TRUE(anyNote(weatherOf("KSOW 262115Z 19013KT 10SM VCTS BKN060 25/09 A3018"), "VCTS"));
+  EXPECT_TRUE(weatherOf("KSOW 262115Z 19013KT 10SM TS CLR 25/09 A3018").layers.empty());
+}
+
+TEST(FromMetar, Precipitation) {
+  struct Case {
+    const char* group;
+    PrecipitationKind kind;
+  };
+  for (const Case& c : {Case{"RA", PrecipitationKind::kRain}, Case{"-SN", PrecipitationKind::kSnow},
+                        Case{"DZ", PrecipitationKind::kDrizzle}, Case{"PL", PrecipitationKind::kIcePellets},
+                        Case{"+TSRAGR", PrecipitationKind::kHail}, Case{"SHGS", PrecipitationKind::kHail},
+                        Case{"RASN", PrecipitationKind::kRain}, Case{"SNRA", PrecipitationKind::kSnow},
+                        Case{"BLSN", PrecipitationKind::kNone}, Case{"BR", PrecipitationKind::kNone},
+                        Case{"VCSH", PrecipitationKind::kNone}, Case{"FZRA", PrecipitationKind::kRain}}) {
+    const Weather w = weatherOf("LSZH 211200Z 24005KT 5000 " + std::string(c.group) + " OVC030 05/04 Q1005");
+    EXPECT_EQ(w.precipitation, c.kind) << c.group;
+    EXPECT_EQ(w.precipitationMmPerH > 0.0, c.kind != PrecipitationKind::kNone) << c.group;
+  }
+  const auto rate = [](const char* group) {
+    return weatherOf("LSZH 211200Z 24005KT 5000 " + std::string(group) + " OVC030 05/04 Q1005")
+        .precipitationMmPerH;
+  };
+  EXPECT_LT(rate("-RA"), 2.5);  // AMS Glossary: light, moderate, heavy
+  EXPECT_GT(rate("RA"), 2.5);
+  EXPECT_LT(rate("RA"), 7.6);
+  EXPECT_GT(rate("+RA"), 7.6);
+  EXPECT_LT(rate("+DZ"), rate("-RA"));
+  EXPECT_EQ(weatherOf("LSZH 211200Z 24005KT 5000 UP OVC030 M05/M06 Q1005").precipitation,
+            PrecipitationKind::kSnow);
+}
+
+TEST(FromMetar, VisibilityAndHaze) {
+  EXPECT_EQ(weatherOf("VIDP 220230Z 24004KT 1200 FU NSC 21/16 Q1019").visibilityM, 1200.0);
+  const double dry = weatherOf("LSZH 211200Z 24005KT CAVOK 25/05 Q1015").visibilityM;
+  const double humid = weatherOf("LSZH 211200Z 24005KT CAVOK 15/14 Q1015").visibilityM;
+  EXPECT_EQ(dry, 40000.0);
+  EXPECT_LT(humid, 0.6 * dry);
+  EXPECT_GE(humid, 10000.0);
+  EXPECT_EQ(weatherOf("KMRY 211753Z 24005KT 10SM CLR 25/05 A2992").visibilityM, 40000.0)
+      << "ten miles or more";
+  EXPECT_NEAR(weatherOf("CYXL 211753Z 24005KT 15SM CLR 25/05 A2992").visibilityM, 24140.16, 0.01);
+  EXPECT_NEAR(relativeHumidity(20.0, 20.0), 1.0, 1e-12);
+  EXPECT_NEAR(relativeHumidity(20.0, 9.3), 0.50, 0.01);  // psychrometric tables
+}
+
+TEST(FromMetar, WindTurnsAndGrowsWithHeight) {
+  const Wind surface{270.0, 5.0};
+  const Wind north = windAloft(surface, 1000.0, 50.0, 6), south = windAloft(surface, 1000.0, -50.0, 6);
+  EXPECT_NEAR(north.fromDeg, 295.0, 1e-6);
+  EXPECT_NEAR(south.fromDeg, 245.0, 1e-6);
+  EXPECT_NEAR(north.speedMps, 5.0 * std::pow(100.0, 1.0 / 7.0), 1e-9);
+  EXPECT_NEAR(windAloft(surface, 1000.0, 0.0, 6).fromDeg, 270.0, 1e-6);
+  EXPECT_NEAR(windAloft(surface, 10.0, 50.0, 6).speedMps, 5.0, 1e-12);
+  // A westerly jet over an easterly at the ground, stronger in winter.
+  const Wind winter = windAloft({90.0, 4.0}, 11000.0, 45.0, 1),
+             summer = windAloft({90.0, 4.0}, 11000.0, 45.0, 7);
+  EXPECT_GT(winter.speedMps, summer.speedMps);
+  EXPECT_GT(winter.fromDeg, 180.0);
+  EXPECT_GT(windAloft({90.0, 4.0}, 11000.0, -45.0, 7).speedMps,
+            windAloft({90.0, 4.0}, 11000.0, -45.0, 1).speedMps);
+  const Weather w = weatherOf("LSZH 211200Z VRB02KT 9999 FEW030 20/10 Q1015");
+  EXPECT_TRUE(anyNote(w, "direction is variable"));
+}
+
+TEST(FromMetar, SunHeatsTheGroundByDay) {
+  EXPECT_TRUE(groundIsHeated(47, 6, 13));
+  EXPECT_TRUE(groundIsHeated(47, 6, 17)) << "convection lags behind the sun";
+  EXPECT_FALSE(groundIsHeated(47, 6, 5.5));
+  EXPECT_FALSE(groundIsHeated(47, 6, 0));
+  EXPECT_FALSE(groundIsHeated(70, 12, 12)) << "polar night";
+  EXPECT_TRUE(groundIsHeated(-40, 12, 13)) << "southern summer";
+}
+
+TEST(FromMetar, NilSaysSo) {
+  const Weather w = weatherOf("NCPL 230000Z AUTO NIL");
+  EXPECT_TRUE(w.layers.empty());
+  EXPECT_TRUE(anyNote(w, "NIL"));
+}
+
+TEST(Layers, EveryGenusIsValidAtEveryLatitude) {
+  for (int g = 0; g < static_cast<int>(kEnumNames<Genus>.size()); ++g) {
+    for (double latitudeDeg = -90.0; latitudeDeg <= 90.0; latitudeDeg += 5.0) {
+      const Layer l = typicalLayer(static_cast<Genus>(g), latitudeDeg);
+      EXPECT_NO_THROW(validate(l)) << g << " at " << latitudeDeg;
+      EXPECT_EQ(static_cast<int>(l.genus), g);
+      EXPECT_GT(l.extinctionPerM * (l.topM - l.baseM), 0.3) << "must be able to cover the sky";
+    }
+  }
+}
+
+TEST(Layers, OpticalDepthsFallIntoTheirIsccpClasses) {
+  const auto tau = [](Genus g) {
+    const Layer l = typicalLayer(g, 45.0);
+    return l.extinctionPerM * (l.topM - l.baseM);
+  };
+  EXPECT_LT(tau(Genus::kCirrus), 3.6);
+  EXPECT_LT(tau(Genus::kCirrostratus), 3.6) << "thinner than its class, so that the halo is seen";
+  EXPECT_GT(tau(Genus::kAltostratus), 3.6);
+  EXPECT_LT(tau(Genus::kAltostratus), 23.0);
+  EXPECT_GT(tau(Genus::kStratocumulus), 3.6);
+  EXPECT_LT(tau(Genus::kStratocumulus), 23.0);
+  EXPECT_GT(tau(Genus::kNimbostratus), 23.0);
+  EXPECT_GT(tau(Genus::kCumulonimbus), 23.0);
+}
+
+TEST(Layers, ContradictionsAreRefused) {
+  Layer l;
+  l.topM = l.baseM;
+  EXPECT_THROW(validate(l), ParameterError);
+  l.topM = l.baseM - 1.0;
+  EXPECT_THROW(validate(l), ParameterError);
+  l = {};
+  l.oktas = 8.5;
+  EXPECT_THROW(validate(l), ParameterError);
+  l = {};
+  l.extinctionPerM = std::nan("");
+  EXPECT_THROW(validate(l), ParameterError);
+}
+
+TEST(Layers, AllExamplesGiveValidWeatherTwiceTheSame) {
+  std::ifstream in(std::string(WELKIN_TEST_DATA_DIR) + "/metar/examples.jsonl");
+  int reports = 0;
+  for (std::string line; std::getline(in, line); ++reports) {
+    const std::string start = "{\"metar\": \"";
+    const std::string report = line.substr(start.size(), line.find('"', start.size()) - start.size());
+    SCOPED_TRACE(report);
+    const Weather a = weatherOf(report), b = weatherOf(report);
+    EXPECT_EQ(a.notes, b.notes);
+    ASSERT_EQ(a.layers.size(), b.layers.size());
+    EXPECT_LE(a.layers.size(), kMaxLayers);
+    double baseM = 0.0;
+    double clear = 1.0;
+    for (std::size_t i = 0; i < a.layers.size(); ++i) {
+      const Layer& l = a.layers[i];
+      EXPECT_NO_THROW(validate(l));
+      EXPECT_GE(l.baseM, baseM);
+      baseM = l.baseM;
+      clear *= 1.0 - l.oktas / 8.0;
+      EXPECT_EQ(l.topM, b.layers[i].topM);
+      EXPECT_EQ(l.windFromDeg, b.layers[i].windFromDeg);
+    }
+    EXPECT_NEAR(a.requestedOktas, 8.0 * (1.0 - clear), 1e-9)
+        << "the layers together are the sky that is asked for";
+  }
+  EXPECT_EQ(reports, 328);
+}
+
+}  // namespace
+}  // namespace welkin::weather

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/weather/from_metar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "welkin/core/units.h"
+#include "welkin/weather/choose_genus.h"
+#include "welkin/weather/cover.h"
+#include "welkin/weather/genus.h"
+#include "welkin/weather/present_weather.h"
+#include "welkin/weather/wind.h"
+
+namespace welkin::weather {
+namespace {
+
+// Meteorological optical range: transmission 5 % over that length (WMO-No. 8, Guide to Instruments, 9.1), so
+// extinction is -ln(0.05) = 2.996 divided by it. (Koschmieder's 3.912 belongs to 2 % contrast.)
+constexpr double kMorOpticalDepth = 2.996;
+
+constexpr double kFogVisibilityM = 1000.0;  // fog is what makes visibility less than this (code table 4678)
+
+// Haze of the air around and above fog. The fog itself makes the low visibility; the air over it is that of a
+// clear night.
+constexpr double kVisibilityOutsideFogM = 10000.0;
+
+// A sky is no longer discerned through this optical depth: the sun's disc is lost in its aureole (Linskens
+// and Bohren, Appearance of the sun and the moon seen through clouds, 1994: about 6 to 10).
+constexpr double kObscuringOpticalDepth = 6.0;
+constexpr double kLeastObscuringDepthM = 60.0, kMostObscuringDepthM = 1500.0;
+
+// Fog through which clouds or a clear sky are reported. Its vertical optical depth makes it hide what is seen
+// through it at optical depth 0.3 or more: elevations whose sine is below 0.06 / 0.3, that fraction of the
+// hemisphere, 1.6 oktas.
+constexpr double kThinFogOpticalDepth = 0.06;
+constexpr double kCoveringOpticalDepth = 0.3;
+
+std::string metres(double m) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f m", m);
+  return text;
+}
+
+class Builder {
+ public:
+  Builder(const Metar& metar, double latitudeDeg, int month, double solarHour)
+      : metar_(metar),
+        latitudeDeg_(latitudeDeg),
+        month_(month),
+        heated_(groundIsHeated(latitudeDeg, month, solarHour)) {}
+
+  Weather build();
+
+ private:
+  // A reported layer with its base settled.
+  struct Reported {
+    MetarCover cover;
+    MetarCloudType type;
+    double baseM;
+    bool assumed;
+  };
+
+  void note(std::string sentence) { weather_.notes.push_back(std::move(sentence)); }
+  void setSurface();
+  std::vector<Reported> settleBases();
+  double climatologicalBaseM(const MetarLayer& layer) const;
+  void addClouds();
+  void limitDepths();
+  double depthM(const Layer& layer, MetarCover cover, bool towering) const;
+  void addThunderstorm();
+  void addFog();
+  void setVisibility();
+  void setWinds();
+
+  const Metar& metar_;
+  double latitudeDeg_;
+  int month_;
+  bool heated_;
+  PresentWeather present_;
+  std::optional<double> condensationM_;
+  bool fogLayer_ = false;
+  Weather weather_;
+};
+
+Weather Builder::build() {
+  if (metar_.nil) {
+    note("The report is NIL; nothing is known of the weather and the sky is drawn clear.");
+    return weather_;
+  }
+  setSurface();
+  addClouds();
+  addThunderstorm();
+  limitDepths();
+  addFog();
+  setVisibility();
+  setWinds();
+  return std::move(weather_);
+}
+
+void Builder::setSurface() {
+  if (metar_.temperatureC) {
+    weather_.temperatureC = *metar_.temperatureC;
+    if (metar_.dewPointC) condensationM_ = condensationLevelM(*metar_.temperatureC, *metar_.dewPointC);
+  } else {
+    note("The temperature is missing; 15 C is assumed.");
+  }
+  if (metar_.pressureHpa) weather_.pressureHpa = *metar_.pressureHpa;
+
+  const bool tropical = std::abs(latitudeDeg_) < 25.0;
+  weather_.surfaceWindFromDeg = tropical ? 90.0 : 270.0;  // trade winds and westerlies
+  if (metar_.wind.directionDeg) {
+    weather_.surfaceWindFromDeg = *metar_.wind.directionDeg;
+  } else if (metar_.wind.speedMps.value_or(1.0) > 0.0) {
+    note(std::string("The wind's direction is ") + (metar_.wind.variable ? "variable" : "missing") +
+         "; the " + (tropical ? "easterly of the tropics" : "westerly of the middle latitudes") +
+         " is assumed.");
+  }
+  if (metar_.wind.speedMps) {
+    weather_.surfaceWindSpeedMps = *metar_.wind.speedMps;
+  } else {
+    weather_.surfaceWindSpeedMps = 4.0;
+    note("The wind's speed is missing; 4 m/s is assumed.");
+  }
+
+  present_ = readPresentWeather(metar_.weather, weather_.temperatureC);
+  // Where CB or TCU is reported and no overcast, what falls without the name of a shower falls from them all
+  // the same.
+  const auto anyLayer = [&](auto test) {
+    return std::any_of(metar_.layers.begin(), metar_.layers.end(), test);
+  };
+  if (present_.character == PrecipitationCharacter::kSteady &&
+      anyLayer([](const MetarLayer& l) { return l.type != MetarCloudType::kNone; }) &&
+      !anyLayer([](const MetarLayer& l) {
+        return l.cover == MetarCover::kOvercast && l.type == MetarCloudType::kNone;
+      })) {
+    present_.character = PrecipitationCharacter::kShowers;
+  }
+  weather_.precipitation = present_.kind;
+  weather_.precipitationMmPerH = present_.rateMmPerH;
+  weather_.thunder = present_.thunder;
+  if (!present_.vicinity.empty()) note("In the vicinity only, and not drawn: " + present_.vicinity + ".");
+}
+
+// Bases that a report does not give: the condensation level for convective cloud where temperature and dew
+// point are known, else the middle of the genus' range in Shuttleworth's table 10.3. The same report gives
+// the same base every time.
+double Builder::climatologicalBaseM(const MetarLayer& layer) const {
+  const bool convective = layer.type != MetarCloudType::kNone;
+  if (convective) return condensationM_ ? std::clamp(*condensationM_, 300.0, 2500.0) : 1000.0;
+  if (present_.fog == FogKind::kFog || present_.character == PrecipitationCharacter::kDrizzle)
+    return 250.0;                                                            // stratus
+  if (present_.character == PrecipitationCharacter::kSteady) return 1000.0;  // nimbostratus
+  if (layer.cover == MetarCover::kFew || layer.cover == MetarCover::kScattered) {
+    return condensationM_ ? std::clamp(*condensationM_, 300.0, 2500.0) : 1000.0;  // cumulus
+  }
+  return 1250.0;  // stratocumulus
+}
+
+std::vector<Builder::Reported> Builder::settleBases() {
+  std::vector<Reported> layers;
+  bool unobserved = false;
+  for (const MetarLayer& l : metar_.layers) {
+    Reported r{l.cover, l.type, 0.0, !l.baseFt};
+    if (l.cover == MetarCover::kUnknown && l.type == MetarCloudType::kNone) {
+      if (!l.baseFt) {
+        unobserved = true;
+        continue;
+      }
+      r.cover = MetarCover::kScattered;
+      note("The amount of the cloud at " + metres(*l.baseFt * kMetresPerFoot) +
+           " is missing; scattered is assumed.");
+    }
+    r.baseM = l.baseFt ? *l.baseFt * kMetresPerFoot : climatologicalBaseM(l);
+    const std::string name = r.type == MetarCloudType::kCumulonimbus      ? "CB"
+                             : r.type == MetarCloudType::kToweringCumulus ? "TCU"
+                                                                          : "Cloud";
+    if (r.assumed)
+      note(name + " is reported without its base; the climatological " + metres(r.baseM) + " is assumed.");
+    if (r.cover == MetarCover::kUnknown) {
+      r.cover = MetarCover::kFew;
+      note(name + " is reported without its amount; few is assumed.");
+    }
+    layers.push_back(r);
+  }
+  if (unobserved && layers.empty() && !metar_.skyObscured && present_.fog != FogKind::kFog) {
+    if (present_.kind != PrecipitationKind::kNone && present_.character != PrecipitationCharacter::kNone) {
+      // It falls from somewhere.
+      const bool showers = present_.character == PrecipitationCharacter::kShowers;
+      const MetarLayer assumed{showers ? MetarCover::kBroken : MetarCover::kOvercast,
+                               {},
+                               showers ? MetarCloudType::kToweringCumulus : MetarCloudType::kNone};
+      layers.push_back({assumed.cover, assumed.type, climatologicalBaseM(assumed), true});
+      note("The station cannot observe cloud, but precipitation falls: " +
+           std::string(showers ? "broken towering cumulus" : "an overcast") + " at the climatological " +
+           metres(layers.back().baseM) + " is assumed.");
+    } else {
+      note("The station cannot observe cloud; none is drawn.");
+    }
+  }
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const Reported& a, const Reported& b) { return a.baseM < b.baseM; });
+  if (layers.size() > kMaxLayers - 1) {  // one place is kept for fog
+    layers.resize(kMaxLayers - 1);
+    note("Only the lowest " + std::to_string(kMaxLayers - 1) + " layers are drawn.");
+  }
+  return layers;
+}
+
+// Depth of the layer. Sources in genus.cpp; what more there is stands here.
+double Builder::depthM(const Layer& layer, MetarCover cover, bool towering) const {
+  const Layer typical = typicalLayer(layer.genus, latitudeDeg_);
+  const double typicalM = typical.topM - typical.baseM;
+  const Levels levels = levelsAt(latitudeDeg_);
+  switch (layer.genus) {
+    case Genus::kCumulus: {
+      if (towering) return congestusDepthM(latitudeDeg_);
+      if (present_.character == PrecipitationCharacter::kShowers) return 0.75 * congestusDepthM(latitudeDeg_);
+      // Heaps grow sideways and upwards together; few small ones are humilis, a broken field mediocris
+      // (Stull 6.6: width ~ depth).
+      return cover == MetarCover::kFew         ? 0.6 * typicalM
+             : cover == MetarCover::kScattered ? 0.9 * typicalM
+                                               : 1.2 * typicalM;
+    }
+    case Genus::kCumulonimbus: {
+      // Winter storms are shallower: in cold air the tropopause and the equilibrium level are low.
+      const double cold = std::clamp((15.0 - weather_.temperatureC) / 25.0, 0.0, 1.0);
+      const double top = 0.85 * levels.highTopM * (1.0 - 0.4 * cold);
+      return std::max(top - layer.baseM, 3000.0);
+    }
+    case Genus::kNimbostratus:
+      return present_.heavy ? 1.4 * typicalM : typicalM;
+    case Genus::kStratocumulus:
+      return cover == MetarCover::kOvercast ? 1.3 * typicalM
+             : cover == MetarCover::kFew    ? 0.8 * typicalM
+                                            : typicalM;
+    case Genus::kStratus:
+      return cover == MetarCover::kFew || cover == MetarCover::kScattered ? 0.5 * typicalM : typicalM;
+    default:
+      return typicalM;
+  }
+}
+
+void Builder::addClouds() {
+  const std::vector<Reported> reported = settleBases();
+  std::vector<MetarCover> covers;
+  for (const Reported& r : reported) covers.push_back(r.cover);
+  const CoverStack stack = stackCover(covers);
+  weather_.requestedOktas = stack.totalOktas;
+
+  // What falls comes from the lowest layer of the largest amount.
+  const auto thickest = std::max_element(covers.begin(), covers.end());
+  bool convectionBelow = false;
+  for (std::size_t i = 0; i < reported.size(); ++i) {
+    const Reported& r = reported[i];
+    GenusQuestion q;
+    q.cover = r.cover;
+    q.type = r.type;
+    q.baseM = r.baseM;
+    q.thickest = static_cast<std::ptrdiff_t>(i) == thickest - covers.begin();
+    q.convectionBelow = convectionBelow;
+    q.precipitation = present_.character;
+    q.fog = present_.fog == FogKind::kFog;
+    q.condensationM = condensationM_;
+    q.latitudeDeg = latitudeDeg_;
+    q.heated = heated_;
+    convectionBelow = convectionBelow || r.type != MetarCloudType::kNone;
+
+    const Genus genus = chooseGenus(q);
+    Layer layer = typicalLayer(genus, latitudeDeg_);
+    layer.baseM = r.baseM;
+    layer.oktas = std::clamp(stack.ownOktas[i], 0.0, 8.0);
+    layer.baseAssumed = r.assumed;
+    layer.topM = r.baseM + depthM(layer, r.cover, r.type == MetarCloudType::kToweringCumulus);
+    weather_.layers.push_back(layer);
+  }
+}
+
+// Thunder without CB in the report (automatic stations, and the code form leaves CB out where a layer hides
+// it): the convective layer with the largest cover is made one, or, without any, the largest of those with a
+// base below 3 km.
+void Builder::addThunderstorm() {
+  auto& layers = weather_.layers;
+  const auto isCb = [](const Layer& l) { return l.genus == Genus::kCumulonimbus; };
+  if (!present_.thunder || std::any_of(layers.begin(), layers.end(), isCb)) return;
+  Layer* best = nullptr;
+  bool bestConvective = false;
+  for (Layer& l : layers) {
+    if (l.baseM >= 3000.0) continue;
+    const bool convective = l.genus == Genus::kCumulus;
+    if (best == nullptr || std::pair(convective, l.oktas) > std::pair(bestConvective, best->oktas)) {
+      best = &l;
+      bestConvective = convective;
+    }
+  }
+  if (best == nullptr) {
+    note("Thunder is reported but no cloud that it could come from; none is drawn.");
+    return;
+  }
+  Layer storm = typicalLayer(Genus::kCumulonimbus, latitudeDeg_);
+  storm.baseM = best->baseM;
+  storm.oktas = best->oktas;
+  storm.baseAssumed = best->baseAssumed;
+  storm.topM = storm.baseM + depthM(storm, MetarCover::kBroken, false);
+  *best = storm;
+  note("Thunder is reported without CB; the layer at " + metres(storm.baseM) + " is taken for it.");
+}
+
+// A sheet reported under another ends below it. Heaps and storms rise through what is above them.
+void Builder::limitDepths() {
+  auto& layers = weather_.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    Layer& l = layers[i];
+    if (l.genus == Genus::kCumulus || l.genus == Genus::kCumulonimbus || l.genus == Genus::kNimbostratus)
+      continue;
+    for (std::size_t k = i + 1; k < layers.size(); ++k) {
+      const double gapM = layers[k].baseM - l.baseM;
+      if (gapM <= 0.0) continue;
+      const double limitedM = std::clamp(0.85 * gapM, 80.0, l.topM - l.baseM);
+      // Thinner, but no more transparent than it was: a reported amount is one that hides.
+      if (limitedM < l.topM - l.baseM) {
+        l.extinctionPerM *= std::min((l.topM - l.baseM) / limitedM, 2.0);
+        l.topM = l.baseM + limitedM;
+      }
+      break;
+    }
+  }
+}
+
+void Builder::addFog() {
+  const bool fog = present_.fog == FogKind::kFog;
+  if (!metar_.skyObscured && present_.fog == FogKind::kNone) return;
+
+  const double reportedM = metar_.visibilityM.value_or(300.0);
+  const bool skySeen = metar_.clear != MetarClear::kNotSaid || metar_.cavok ||
+                       std::any_of(metar_.layers.begin(), metar_.layers.end(),
+                                   [](const MetarLayer& l) { return l.cover != MetarCover::kUnknown; });
+  Layer layer = typicalLayer(Genus::kFog, latitudeDeg_);
+  layer.baseM = 0.0;
+  fogLayer_ = true;
+
+  if (metar_.skyObscured || (fog && !skySeen && reportedM < kFogVisibilityM)) {
+    // The vertical visibility is a lower bound of the depth; from there on, as deep as it takes to hide the
+    // sky.
+    const double visibilityM = std::clamp(reportedM, 25.0, 10000.0);
+    layer.extinctionPerM = kMorOpticalDepth / visibilityM;
+    const double verticalM =
+        metar_.verticalVisibilityFt ? *metar_.verticalVisibilityFt * kMetresPerFoot : 0.0;
+    layer.topM = std::clamp(std::max(kObscuringOpticalDepth / layer.extinctionPerM, 1.5 * verticalM),
+                            kLeastObscuringDepthM, kMostObscuringDepthM);
+    layer.oktas = 8.0;
+    weather_.requestedOktas = 8.0;
+    if (!metar_.skyObscured) note("Fog and no sky reported: the fog is taken to hide the sky.");
+  } else {
+    // Fog that lets the sky be seen. Patches and banks are given the visibility of fog, whatever prevails
+    // around them.
+    const double visibilityM = fog ? std::clamp(reportedM, 50.0, kFogVisibilityM) : 500.0;
+    layer.extinctionPerM = kMorOpticalDepth / visibilityM;
+    // MIFG is less than 2 m deep (WMO-No. 306, table 4678).
+    layer.topM = present_.fog == FogKind::kShallow
+                     ? 2.0
+                     : std::clamp(kThinFogOpticalDepth / layer.extinctionPerM, 4.0, 50.0);
+    const double opticalDepth = layer.extinctionPerM * layer.topM;
+    // Banks cover a part of the aerodrome, patches less.
+    const double share = present_.fog == FogKind::kPartial   ? 0.5
+                         : present_.fog == FogKind::kPatches ? 0.3
+                                                             : 1.0;
+    layer.oktas = 8.0 * share * std::min(opticalDepth / kCoveringOpticalDepth, 1.0);
+    weather_.requestedOktas = combinedOktas(weather_.requestedOktas, layer.oktas);
+    note("The fog lets the sky be seen: it is drawn " + metres(layer.topM) + " deep.");
+  }
+  weather_.layers.insert(weather_.layers.begin(), layer);
+}
+
+void Builder::setVisibility() {
+  const double humidity = metar_.temperatureC && metar_.dewPointC
+                              ? relativeHumidity(*metar_.temperatureC, *metar_.dewPointC)
+                              : 0.6;
+  const double clearM = clearVisibilityM(humidity);
+  if (!metar_.visibilityM) {
+    weather_.visibilityM = fogLayer_ ? kVisibilityOutsideFogM : clearM;
+    note("The visibility is missing; " + metres(weather_.visibilityM) + " is assumed.");
+    return;
+  }
+  const double reportedM = *metar_.visibilityM;
+  if (fogLayer_ && reportedM < kVisibilityOutsideFogM) {
+    weather_.visibilityM = kVisibilityOutsideFogM;
+    note("What lies on the ground makes the visibility of " + metres(reportedM) +
+         "; the air above it is given " + metres(kVisibilityOutsideFogM) + ".");
+    return;
+  }
+  // Ten statute miles is as far as most American stations report (FMH-1, table 6-1).
+  const bool atLeast = metar_.visibilityBound == MetarBound::kAtLeast ||
+                       std::abs(reportedM - 10.0 * kMetresPerStatuteMile) < 1.0;
+  weather_.visibilityM = std::max(atLeast ? std::max(clearM, reportedM) : reportedM, 25.0);
+}
+
+void Builder::setWinds() {
+  const Wind surface{weather_.surfaceWindFromDeg, weather_.surfaceWindSpeedMps};
+  for (Layer& l : weather_.layers) {
+    const double heightM = l.genus == Genus::kFog ? 10.0 : 0.5 * (l.baseM + l.topM);
+    const Wind wind = windAloft(surface, heightM, latitudeDeg_, month_);
+    l.windFromDeg = wind.fromDeg;
+    l.windSpeedMps = wind.speedMps;
+  }
+}
+
+}  // namespace
+
+double relativeHumidity(double temperatureC, double dewPointC) {
+  const auto vapourPressure = [](double t) { return std::exp(17.62 * t / (243.12 + t)); };
+  return std::clamp(vapourPressure(dewPointC) / vapourPressure(temperatureC), 0.0, 1.0);
+}
+
+double clearVisibilityM(double relativeHumidity) {
+  constexpr double kDryRangeM = 40000.0, kDryHumidity = 0.6, kMostHumidity = 0.97;
+  const double humidity = std::clamp(relativeHumidity, kDryHumidity, kMostHumidity);
+  return kDryRangeM * std::sqrt((1.0 - humidity) / (1.0 - kDryHumidity));
+}
+
+Weather weatherFromMetar(const Metar& metar, double latitudeDeg, int month, double solarHour) {
+  return Builder(metar, latitudeDeg, month, solarHour).build();
+}
+
+}  // namespace welkin::weather
