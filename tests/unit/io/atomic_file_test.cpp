@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/io/atomic_file.h"
+
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "scratch.h"
+
+namespace welkin::io {
+namespace {
+
+class AtomicFileTest : public Scratch {};
+
+TEST_F(AtomicFileTest, AppearsOnlyAtCommit) {
+  const auto path = folder / "a.txt";
+  AtomicFile file(path);
+  file.write("hello");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(file.temporaryPath().parent_path(), folder);
+  EXPECT_TRUE(file.temporaryPath().filename().string().starts_with(".a.txt."));
+  file.commit();
+  EXPECT_EQ(contents(path), "hello");
+  EXPECT_EQ(fileCount(), 1);
+}
+
+TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays) {
+  const auto path = folder / "a.txt";
+  writeTextFile(path, "old");
+  try {
+    AtomicFile file(path);
+    file.write(std::string(1 << 20, 'x'));
+    throw Interrupted();
+  } catch (const Interrupted&) {
+  }
+  EXPECT_EQ(contents(path), "old");
+  EXPECT_EQ(fileCount(), 1);
+  writeTextFile(path, "new");
+  EXPECT_EQ(contents(path), "new");
+}
+
+TEST_F(AtomicFileTest, SeeksAndWritesOver) {
+  const auto path = folder / "a.bin";
+  AtomicFile file(path);
+  file.write("0123456789");
+  file.seek(4);
+  file.write("xy");
+  EXPECT_EQ(file.position(), 6u);
+  file.seek(12);
+  file.write("!");
+  file.commit();
+  EXPECT_EQ(contents(path), std::string("0123xy6789\0\0!", 13));
+}
+
+TEST_F(AtomicFileTest, WritesMoreThanItsBuffer) {
+  std::string text;
+  for (int i = 0; i < 200000; ++i) text += std::to_string(i) + ' ';
+  AtomicFile file(folder / "big");
+  for (std::size_t at = 0; at < text.size(); at += 777) file.write(std::string_view(text).substr(at, 777));
+  file.commit();
+  EXPECT_EQ(contents(folder / "big"), text);
+}
+
+TEST_F(AtomicFileTest, ErrorsNamePathAndReason) {
+  // A file is no folder, whoever asks: also root, whom permissions do not stop.
+  writeTextFile(folder / "file", "");
+  const std::string below = (folder / "file" / "a.png").string();
+  EXPECT_EQ(messageOf<IoError>([&] { AtomicFile f(below); }), "cannot write " + below + ": Not a directory");
+  const std::string missing = (folder / "none" / "a.png").string();
+  EXPECT_EQ(messageOf<IoError>([&] { AtomicFile f(missing); }),
+            "cannot write " + missing + ": No such file or directory");
+  EXPECT_EQ(messageOf<IoError>([&] { AtomicFile f(folder); }),
+            "cannot write " + folder.string() + ": Is a directory");
+  EXPECT_THROW(AtomicFile("/proc/welkin.png"), IoError);
+  EXPECT_THROW(AtomicFile(""), IoError);
+  EXPECT_THROW(AtomicFile(folder / std::string(300, 'n')), IoError);
+  EXPECT_EQ(fileCount(), 1);
+}
+
+TEST_F(AtomicFileTest, FullDiskIsAnError) {
+  EXPECT_EQ(messageOf<IoError>([] { writeTextFile("/dev/full", "x"); }),
+            "cannot write /dev/full: No space left on device");
+  EXPECT_THROW(
+      {
+        AtomicFile file("/dev/full");
+        file.write(std::string(1 << 20, 'x'));
+      },
+      IoError);
+}
+
+TEST_F(AtomicFileTest, DevicesAreWrittenNotReplaced) {
+  writeTextFile("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(AtomicFileTest, FollowsLinksAndKeepsPermissions) {
+  writeTextFile(folder / "real", "old");
+  chmod((folder / "real").c_str(), 0640);
+  std::filesystem::create_symlink("real", folder / "link");
+  writeTextFile(folder / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(contents(folder / "real"), "new");
+  EXPECT_EQ(std::filesystem::status(folder / "real").permissions(), std::filesystem::perms(0640));
+}
+
+TEST_F(AtomicFileTest, TwoWritersOfOnePathDoNotMeet) {
+  const auto path = folder / "a";
+  AtomicFile first(path), second(path);
+  first.write("first");
+  second.write("second");
+  second.commit();
+  EXPECT_EQ(contents(path), "second");
+  first.commit();
+  EXPECT_EQ(contents(path), "first");
+  EXPECT_EQ(fileCount(), 1);
+}
+
+TEST_F(AtomicFileTest, SignalHandlerLeavesNothing) {
+  EXPECT_EXIT(
+      {
+        std::signal(SIGTERM, [](int) {
+          removeUnfinishedFiles();
+          _exit(9);
+        });
+        AtomicFile done(folder / "done");
+        AtomicFile unfinished(folder / "unfinished");
+        done.write("done");
+        done.commit();
+        unfinished.write(std::string(1 << 20, 'x'));
+        std::raise(SIGTERM);
+      },
+      testing::ExitedWithCode(9), "");
+  EXPECT_EQ(fileCount(), 1);
+  EXPECT_EQ(contents(folder / "done"), "done");
+}
+
+}  // namespace
+}  // namespace welkin::io

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenEXR scan-line pictures of linear light, ZIP compressed, with channels Y, RGB or RGBA.
+//
+// Files carry the chromaticities of Rec. 709 and whiteLuminance = 1 cd/m2, the OpenEXR attribute that says
+// that pixel values are cd/m2. The same picture gives the same bytes whatever the number of threads.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "welkin/core/image.h"
+
+namespace welkin::io {
+
+enum class ExrDepth {
+  kAuto,   // half, but float when a value is beyond half's 65504: the sun's disc is 1.6e9 cd/m2
+  kHalf,   // values beyond +-65504 are clamped
+  kFloat,  // as they are
+};
+
+struct ExrOptions {
+  ExrDepth depth = ExrDepth::kAuto;
+  std::map<std::string, std::string> metadata;  // further text attributes
+};
+
+// 1, 3 or 4 channels. The file appears complete or not at all. Throws IoError; ParameterError for NaNs and
+// infinities (naming the pixel), other channel counts, no pixels, or metadata named like an attribute of the
+// format.
+void writeExr(const std::filesystem::path& path, const Image<float>& image, const ExrOptions& options = {});
+
+struct ExrPicture {
+  Image<float> image;  // the data window: Y, RGB or RGBA
+  bool half = false;   // how it was stored
+  std::map<std::string, std::string> metadata;
+};
+
+// Throws IoError for what is missing, damaged, no EXR, or has neither Y nor R, G and B.
+ExrPicture readExr(const std::filesystem::path& path);
+
+}  // namespace welkin::io

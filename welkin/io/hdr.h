@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radiance pictures (.hdr): RGB with 8-bit mantissas and one 8-bit exponent a pixel, run-length coded.
+// Greg Ward 1991, "Real Pixels", Graphics Gems II; the file format is described in Radiance's "File Formats"
+// manual page.
+//
+// Values are written as they are, cd/m2 in Welkin; Radiance itself would take them for W/(sr m2). Relative
+// precision is 1/256 of a pixel's largest channel, the range up to 1.7e38. Mantissas are rounded to the
+// nearest and read without Radiance's half step, as most programs do.
+#pragma once
+
+#include <filesystem>
+
+#include "welkin/core/image.h"
+
+namespace welkin::io {
+
+// 3 channels (a 4th, alpha, is left out). Negative values become 0. The file appears complete or not at all.
+// Throws IoError; ParameterError for NaNs and infinities (naming the pixel), other channel counts or no
+// pixels.
+void writeHdr(const std::filesystem::path& path, const Image<float>& image);
+
+// Pictures in the usual orientation (-Y +X), with or without run-length coding of the newer kind. Throws
+// IoError for all else.
+Image<float> readHdr(const std::filesystem::path& path);
+
+}  // namespace welkin::io
