@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Helpers that every folder of the house uses: one library a folder, one unit-test program a folder.
 
+include(GNUInstallDirs)
+
 # Compiler settings shared by all of Welkin's own targets.
 # Contraction of a*b+c is off so that a field has the same value with every compiler and instruction set.
 add_library(welkin_settings INTERFACE)
@@ -20,7 +22,7 @@ function(welkin_module folder)
   add_library(welkin::${folder} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/welkin>)
   list(TRANSFORM ARG_DEPENDS PREPEND welkin::)
   target_link_libraries(${target}
     PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC_LIBS}

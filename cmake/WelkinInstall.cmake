@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+# What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package and
+# the program's documentation.
+include(CMakePackageConfigHelpers)
+
+# All folders at once.
+add_library(welkin_all INTERFACE)
+add_library(welkin::welkin ALIAS welkin_all)
+set_target_properties(welkin_all PROPERTIES EXPORT_NAME welkin)
+foreach(folder IN LISTS WELKIN_FOLDERS)
+  if(TARGET welkin_${folder})
+    target_link_libraries(welkin_all INTERFACE welkin::${folder})
+  endif()
+endforeach()
+install(TARGETS welkin_all EXPORT welkin-targets)
+
+# The packages that the exported targets name, for find_dependency(). A target that is missing here makes tests/install fail.
+set(WELKIN_PACKAGES Threads glm Erfa)
+if(TARGET welkin_io)
+  string(APPEND WELKIN_PACKAGES ";OpenEXR;PNG")
+endif()
+if(TARGET welkin_gpu)
+  string(APPEND WELKIN_PACKAGES ";Epoxy")
+endif()
+string(REPLACE ";" " " WELKIN_PACKAGES "${WELKIN_PACKAGES}")
+
+# <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
+# common a name to stand in <prefix>/include itself.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/welkin" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin"
+  FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders/lib" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin/shaders"
+  FILES_MATCHING PATTERN "*.glsl")
+
+set(WELKIN_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/welkin")
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/cmake/welkin-config.cmake.in" "${PROJECT_BINARY_DIR}/welkin-config.cmake"
+  INSTALL_DESTINATION "${WELKIN_PACKAGE_DIR}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/welkin-config-version.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${PROJECT_BINARY_DIR}/welkin-config.cmake" "${PROJECT_BINARY_DIR}/welkin-config-version.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/FindErfa.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindEpoxy.cmake"
+  DESTINATION "${WELKIN_PACKAGE_DIR}")
+install(EXPORT welkin-targets NAMESPACE welkin:: DESTINATION "${WELKIN_PACKAGE_DIR}")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

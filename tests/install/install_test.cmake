@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# The steps of the test install/find_package, run as a script. WORK is emptied first and may hold nothing else.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    string(JOIN " " line ${ARGN})
+    message(FATAL_ERROR "failed (${result}): ${line}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+run("${CMAKE_COMMAND}" --install "${WELKIN_BUILD}" --prefix "${WORK}/prefix")
+
+# Every installed header must compile on its own: one source file for each.
+set(include "${WORK}/prefix/include/welkin")
+file(GLOB_RECURSE headers RELATIVE "${include}" "${include}/welkin/*.h")
+list(LENGTH headers count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "no headers in ${include}")
+endif()
+foreach(header IN LISTS headers)
+  string(MAKE_C_IDENTIFIER "${header}" name)
+  file(WRITE "${WORK}/headers/${name}.cpp" "#include \"${header}\"\n#include \"${header}\"  // again: once must be enough\n")
+endforeach()
+
+run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/consumer" -B "${WORK}/build" -G "${GENERATOR}"
+  "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
+  "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DHEADER_SOURCES=${WORK}/headers")
+run("${CMAKE_COMMAND}" --build "${WORK}/build")
+run("${WORK}/build/consumer")
+run("${WORK}/build/consumer_of_all")
