@@ -28,6 +28,9 @@ float phaseDraine(float c, float g, float alpha) {
 float phaseCornetteShanks(float c, float g) {
   return shared::phaseCornetteShanks(c, g);
 }
+float phaseHaze(float c, float g) {
+  return shared::phaseHaze(c, g);
+}
 float draineMeanCosine(float g, float alpha) {
   return shared::draineMeanCosine(g, alpha);
 }

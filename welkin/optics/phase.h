@@ -10,6 +10,7 @@ float phaseRayleigh(float c);
 float phaseHenyeyGreenstein(float c, float g);
 float phaseDraine(float c, float g, float alpha);
 float phaseCornetteShanks(float c, float g);
+float phaseHaze(float c, float g);  // two lobes; g: mean cosine, up to 0.9
 
 // Mean cosine of a Draine (and, with alpha = 1, of a Cornette-Shanks) phase function.
 float draineMeanCosine(float g, float alpha);
