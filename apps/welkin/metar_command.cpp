@@ -153,8 +153,7 @@ std::string skyText(const Metar& m) {
 
 }  // namespace
 
-std::string metarToJson(std::string_view report) {
-  const MetarResult r = weather::parseMetar(report);
+std::string metarToJson(std::string_view report, const MetarResult& r) {
   Json j;
   if (!r.ok()) {
     j["error"] = r.errors.front().reason;
@@ -172,8 +171,7 @@ std::string metarToJson(std::string_view report) {
   return dump(j);
 }
 
-std::string metarToText(std::string_view report) {
-  const MetarResult r = weather::parseMetar(report);
+std::string metarToText(const MetarResult& r) {
   const Metar& m = r.metar;
   std::string s;
   if (!m.station.empty() || m.day) {
@@ -205,9 +203,10 @@ int runMetarCommand(const std::vector<std::string>& reports, const std::optional
                     bool json) {
   bool anyError = false;
   const auto show = [&](std::string_view report) {
-    const std::string out = json ? metarToJson(report) + "\n" : metarToText(report);
+    const MetarResult r = weather::parseMetar(report);
+    const std::string out = json ? metarToJson(report, r) + "\n" : metarToText(r);
     std::fwrite(out.data(), 1, out.size(), stdout);
-    anyError = anyError || !weather::parseMetar(report).ok();
+    anyError = anyError || !r.ok();
   };
   for (const auto& report : reports) show(report);
   if (file) {

@@ -7,15 +7,24 @@
 #include <string_view>
 #include <vector>
 
+#include "welkin/weather/metar.h"
+
 namespace welkin::app {
 
-// One line of JSON for one report, without the newline. The fields are those of docs and design ("welkin
-// metar --json"); a report with errors has what could be read, and besides `error` and `column` of its first
-// error, `report`, and `errors` with all of them.
-std::string metarToJson(std::string_view report);
+// One line of JSON for one report and what parseMetar() made of it, without the newline:
+//
+//   station, day, hour, minute, auto, wind {direction_deg, variable, speed_mps, gust_mps}, visibility_m,
+//   cavok, layers [{cover, base_ft, type}], clear, vertical_visibility_ft, weather [...], temperature_c,
+//   dewpoint_c, pressure_hpa
+//
+// with null for what is missing; a cover of unknown amount is "///". Besides, what these cannot tell apart:
+// visibility_bound ">" (or more), "<" (less than) or null; sky_obscured (VV, also without a height); nil. A
+// report with errors has `error` and `column` of the first, `report`, and `errors` with all of them, beside
+// what could be read; where not even station or time could be read, the errors alone.
+std::string metarToJson(std::string_view report, const weather::MetarResult& result);
 
 // A readable summary of one report, several lines, each ended by a newline.
-std::string metarToText(std::string_view report);
+std::string metarToText(const weather::MetarResult& result);
 
 // Prints every report of `reports`, then every line of `file` ("-": standard input); empty lines and lines
 // that start with # are passed over in files. Returns the exit code: 0, or 1 when any report had an error.

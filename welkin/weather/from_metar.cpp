@@ -163,6 +163,7 @@ double Builder::climatologicalBaseM(const MetarLayer& layer) const {
 std::vector<Builder::Reported> Builder::settleBases() {
   std::vector<Reported> layers;
   bool unobserved = false;
+  const auto lower = [](const Reported& a, const Reported& b) { return a.baseM < b.baseM; };
   for (const MetarLayer& l : metar_.layers) {
     Reported r{l.cover, l.type, 0.0, !l.baseFt};
     if (l.cover == MetarCover::kUnknown && l.type == MetarCloudType::kNone) {
@@ -184,7 +185,8 @@ std::vector<Builder::Reported> Builder::settleBases() {
       r.cover = MetarCover::kFew;
       note(name + " is reported without its amount; few is assumed.");
     }
-    layers.push_back(r);
+    // From the ground up; what is at one height stays in the report's order.
+    layers.insert(std::upper_bound(layers.begin(), layers.end(), r, lower), r);
   }
   if (unobserved && layers.empty() && !metar_.skyObscured && present_.fog != FogKind::kFog) {
     if (present_.kind != PrecipitationKind::kNone && present_.character != PrecipitationCharacter::kNone) {
@@ -201,8 +203,6 @@ std::vector<Builder::Reported> Builder::settleBases() {
       note("The station cannot observe cloud; none is drawn.");
     }
   }
-  std::stable_sort(layers.begin(), layers.end(),
-                   [](const Reported& a, const Reported& b) { return a.baseM < b.baseM; });
   if (layers.size() > kMaxLayers - 1) {  // one place is kept for fog
     layers.resize(kMaxLayers - 1);
     note("Only the lowest " + std::to_string(kMaxLayers - 1) + " layers are drawn.");

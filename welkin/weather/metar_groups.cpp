@@ -2,6 +2,7 @@
 #include "welkin/weather/metar_groups.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "welkin/core/units.h"
 
@@ -41,7 +42,7 @@ bool signedTenths(Cursor& c, std::optional<double>& value) {
   const auto tenths = c.digits(3);
   if (!sign || *sign > 1 || !tenths) return false;
   // Not -0.0, which would print as such.
-  value = *sign == 1 && *tenths != 0 ? -0.1 * *tenths : 0.1 * *tenths;
+  value = (*sign == 1 && *tenths != 0 ? -*tenths : *tenths) / 10.0;
   return true;
 }
 
@@ -433,6 +434,14 @@ std::optional<PressureGroup> readPressure(std::string_view text) {
   } else if (c.eat('Q')) {
     if (!digitsOrSolidi(c, 4, number)) return {};
     if (number) p.hpa = *number;
+    if (number && c.eat('/')) {  // the same in inches beside it: Q1013/2992, Q1003/29.62
+      c.eat('A');
+      const auto inches = c.digits(2);
+      c.eat('.');
+      const auto hundredths = c.digits(2);
+      if (!inches || !hundredths) return {};
+      if (std::abs((*inches + 0.01 * *hundredths) * kHpaPerInHg - *p.hpa) > kPressureRoundingHpa) return {};
+    }
   } else if (c.eat('A')) {
     if (!digitsOrSolidi(c, 4, number)) return {};
     if (number) p.hpa = *number * 0.01 * kHpaPerInHg;

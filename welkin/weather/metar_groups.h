@@ -103,7 +103,11 @@ std::optional<TemperatureGroup> readExactTemperature(std::string_view text);  //
 struct PressureGroup {
   Maybe<double> hpa;
 };
-std::optional<PressureGroup> readPressure(std::string_view text);  // Q1013, A2992, QNH2992INS, Q////
+// Hectopascals are rounded down to whole ones, so the same pressure in hPa and inches differs by less than
+// this.
+inline constexpr double kPressureRoundingHpa = 2.0;
+std::optional<PressureGroup> readPressure(
+    std::string_view text);  // Q1013, A2992, QNH2992INS, Q1013/2992, Q////
 
 // What an unreadable group was most likely meant to be, as the reason of an error.
 std::string explainUnreadable(std::string_view shown, std::string_view text);

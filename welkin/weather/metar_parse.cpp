@@ -246,7 +246,7 @@ bool Reader::readSupplement(const Group& g) {
 
 // WS R06, WS RWY14, WS ALL RWY, WS TKOF RWY20, WS LDG RWY02
 void Reader::skipWindShear() {
-  static constexpr std::array<std::string_view, 5> kWords = {"ALL", "RWY", "TKOF", "LDG", "TO"};
+  static constexpr std::array<std::string_view, 5> kWords = {"ALL", "RWY", "RWYS", "TKOF", "LDG"};
   for (Group g = groups_.peek(); g; g = groups_.peek()) {
     if (std::find(kWords.begin(), kWords.end(), g.text) == kWords.end()) {
       Cursor c(g.text);
@@ -433,9 +433,7 @@ void Reader::setPressure(const Group& g, const PressureGroup& p) {
     metar().pressureHpa = p.hpa;
     return;
   }
-  // Q and A side by side: Q is rounded down to whole hectopascals, so the two differ by less than 1 and a
-  // rounding.
-  if (std::abs(*p.hpa - *metar().pressureHpa) > 2.0) {
+  if (std::abs(*p.hpa - *metar().pressureHpa) > kPressureRoundingHpa) {
     fail(g, "'" + shown(g.text) + "' contradicts the pressure before it");
   }
 }

@@ -31,22 +31,23 @@ enum class Genus {
 // One layer of cloud.
 struct Layer {
   Genus genus = Genus::kCumulus;
-  double baseM = 1000.0;             // height of the base above the ground
-  double topM = 2000.0;              // height of the highest tops above the ground; > baseM
-  double oktas = 3.5;                // the layer's own cover of the sky hemisphere, 0 to 8, whatever lies below it
-  double effectiveRadiusUm = 8.0;    // droplets or ice crystals
-  double extinctionPerM = 0.05;      // typical extinction in the body of the cloud at visible wavelengths, 1/m
-  double windFromDeg = 270.0;        // true direction the layer's wind comes from
+  double baseM = 1000.0;  // height of the base above the ground
+  double topM = 2000.0;   // height of the highest tops above the ground; > baseM
+  double oktas = 3.5;     // the layer's own cover of the sky hemisphere, 0 to 8, whatever lies below it
+  double effectiveRadiusUm = 8.0;  // droplets or ice crystals
+  double extinctionPerM = 0.05;    // typical extinction in the body of the cloud at visible wavelengths, 1/m
+  double windFromDeg = 270.0;      // true direction the layer's wind comes from
   double windSpeedMps = 8.0;
-  bool baseAssumed = false;          // the report did not give the base; it is climatological
+  bool baseAssumed = false;  // the report did not give the base; it is climatological
 };
 void describe(Layer& layer, ParamVisitor& v);
 
-// Throws ParameterError when the values contradict one another (a top that is not above its base) or are out of range.
+// Throws ParameterError when the values contradict one another (a top that is not above its base) or are out
+// of range.
 void validate(const Layer& layer);
 
-// A layer of the genus as it is most often met at the latitude (degrees, either sign): heights, extinction, size of droplets or
-// crystals, and wind are typical, the cover is the struct's default. See genus.h.
+// A layer of the genus as it is most often met at the latitude (degrees, either sign): heights, extinction,
+// size of droplets or crystals, and wind are typical, the cover is the struct's default. See genus.h.
 Layer typicalLayer(Genus genus, double latitudeDeg);
 
 // Most layers that a Weather has.
@@ -56,17 +57,17 @@ enum class PrecipitationKind { kNone, kDrizzle, kRain, kSnow, kIcePellets, kHail
 
 // Everything about the weather that the sky depends on.
 struct Weather {
-  std::vector<Layer> layers;        // from the lowest base to the highest
-  double requestedOktas = 0.0;      // cover of the whole sky by all layers together
-  double visibilityM = 40000.0;     // meteorological optical range at the ground, for haze (Koschmieder)
-  double pressureHpa = 1013.25;     // at mean sea level
+  std::vector<Layer> layers;     // from the lowest base to the highest
+  double requestedOktas = 0.0;   // cover of the whole sky by all layers together
+  double visibilityM = 40000.0;  // meteorological optical range at the ground, for haze (Koschmieder)
+  double pressureHpa = 1013.25;  // at mean sea level
   double temperatureC = 15.0;
   double surfaceWindFromDeg = 270.0;
   double surfaceWindSpeedMps = 5.0;
   PrecipitationKind precipitation = PrecipitationKind::kNone;
   double precipitationMmPerH = 0.0;
   bool thunder = false;
-  std::vector<std::string> notes;   // what was assumed or decided, one sentence each, for the report
+  std::vector<std::string> notes;  // what was assumed or decided, one sentence each, for the report
 };
 
 }  // namespace welkin::weather
@@ -74,7 +75,7 @@ struct Weather {
 namespace welkin {
 template <>
 inline constexpr auto kEnumNames<weather::Genus> = std::array<std::string_view, 11>{
-    "cumulus",     "stratocumulus", "stratus", "nimbostratus",  "cumulonimbus", "altocumulus",
+    "cumulus",     "stratocumulus", "stratus",      "nimbostratus", "cumulonimbus", "altocumulus",
     "altostratus", "cirrus",        "cirrocumulus", "cirrostratus", "fog"};
 template <>
 inline constexpr auto kEnumNames<weather::PrecipitationKind> =

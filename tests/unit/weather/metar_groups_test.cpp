@@ -228,8 +228,8 @@ TEST(MetarGroups, Temperatures) {
 
   const auto exact = readExactTemperature("T01561011");
   ASSERT_TRUE(exact);
-  EXPECT_DOUBLE_EQ(*exact->temperatureC, 15.6);
-  EXPECT_DOUBLE_EQ(*exact->dewPointC, -1.1);
+  EXPECT_EQ(*exact->temperatureC, 15.6);
+  EXPECT_EQ(*exact->dewPointC, -1.1);
   EXPECT_FALSE(readExactTemperature("T0156")->dewPointC);
   expectAll(false, readExactTemperature, {"T015610111", "T0156101", "T21561011", "T0156X011", "TSNO", "T"});
 }
@@ -237,6 +237,8 @@ TEST(MetarGroups, Temperatures) {
 TEST(MetarGroups, Pressure) {
   EXPECT_DOUBLE_EQ(*readPressure("Q1013")->hpa, 1013.0);
   EXPECT_NEAR(*readPressure("A2992")->hpa, 1013.2, 0.05);
+  EXPECT_DOUBLE_EQ(*readPressure("Q1013/2992")->hpa, 1013.0);
+  EXPECT_DOUBLE_EQ(*readPressure("Q1003/29.62")->hpa, 1003.0);
   EXPECT_NEAR(*readPressure("QNH2992INS")->hpa, 1013.2, 0.05);
   for (const char* missing : {"Q////", "A////"}) {
     ASSERT_TRUE(readPressure(missing)) << missing;
@@ -244,7 +246,7 @@ TEST(MetarGroups, Pressure) {
   }
   expectAll(false, readPressure,
             {"Q10", "Q.1020", "A30332", "Q10133", "Q0700", "A2497", "A3500", "Q1200", "1013", "A", "Q", "AO2",
-             "Q101O", "QNH1013"});
+             "Q101O", "QNH1013", "Q1013/2892", "Q1013/", "Q1013/29"});
 }
 
 }  // namespace
