@@ -10,9 +10,7 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-extern "C" void setInterrupted(int) {
-  interrupted = 1;
-}
+extern "C" void setInterrupted(int) { interrupted = 1; }
 
 }  // namespace
 

@@ -202,6 +202,9 @@ class TomlReader final : public ParamVisitor {
       if (row.key == found)
         return "; it belongs " +
                (row.group.empty() ? "at the top of the file, above every [table]" : "in " + row.group);
+    // A key without its unit is the commonest slip.
+    for (const std::string& k : level.known)
+      if (k.starts_with(found + "_")) return "; did you mean \"" + k + "\"?";
     if (const std::string near = nearestName(found, level.known); !near.empty())
       return "; did you mean \"" + near + "\"?";
     std::string list;

@@ -103,6 +103,8 @@ TEST(SceneFile, UnknownKeysNameTheNearestAndThePlace) {
   EXPECT_EQ(p.what, "s.toml:3:3: unknown key \"latitude_dge\" in [place]; did you mean \"latitude_deg\"?");
   EXPECT_EQ(p.line, 3);
   EXPECT_EQ(p.column, 3);
+  EXPECT_EQ(problemOf("[place]\nlatitude = 4").what,
+            "s.toml:2:1: unknown key \"latitude\" in [place]; did you mean \"latitude_deg\"?");
   EXPECT_EQ(problemOf("tiem = 1").what, "s.toml:1:1: unknown key \"tiem\"; did you mean \"time\"?");
   EXPECT_EQ(problemOf("[camrea]\nfov_deg = 3").what,
             "s.toml:1:2: unknown key \"camrea\"; did you mean \"camera\"?");
