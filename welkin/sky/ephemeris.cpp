@@ -5,7 +5,9 @@
 #include <erfam.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "welkin/core/units.h"
@@ -27,17 +29,23 @@ constexpr double kSunIlluminanceLux = 133100.0;
 // 171.
 constexpr double kFullMoonIlluminanceLux = 0.279;
 
-// TT - UT1 in seconds before 1972, when UTC was not yet held near UT1 by leap seconds: F. Espenak and J.
-// Meeus 2006, "Five Millennium Canon of Solar Eclipses", polynomials for 1941-1961 and 1961-1986; before 1941
-// a straight line through their values, since the sun's place changes by 0.04 arc seconds a second.
+// TT - UT1 in seconds at the beginning of 1950, 1952, ... 2026, as observed (IERS, USNO).
+constexpr std::array<double, 39> kDeltaT = {
+    28.93, 29.70, 30.20, 30.76, 32.03, 33.07, 33.62, 34.44, 35.95, 37.96, 39.93, 42.15, 44.48,
+    46.46, 48.53, 50.54, 52.17, 53.79, 54.87, 55.82, 56.86, 58.31, 59.98, 61.63, 62.97, 63.83,
+    64.30, 64.57, 64.85, 65.46, 66.07, 66.60, 67.28, 68.10, 68.97, 69.36, 69.29, 69.18, 69.11};
+
+// TT - UT1 in seconds. Before the table a line through 1900's -2.8 s serves: the sun moves 0.04 arc seconds a
+// second. After it nobody knows: predictions of UT1 - UTC for 2050 lie between 0, if leap seconds go on, and
+// -2.3 s; the middle way turns the sky by less than 0.005 degrees from both.
 double deltaTSeconds(double year) {
-  if (year < 1941.0) return -2.8 + (year - 1900.0) * 0.66;
-  if (year < 1961.0) {
-    const double t = year - 1950.0;
-    return 29.07 + 0.407 * t - t * t / 233.0 + t * t * t / 2547.0;
-  }
-  const double t = year - 1975.0;
-  return 45.45 + 1.067 * t - t * t / 260.0 - t * t * t / 718.0;
+  constexpr double kFirst = 1950.0, kStep = 2.0;
+  constexpr double kLast = kFirst + kStep * (kDeltaT.size() - 1);
+  if (year < kFirst) return -2.8 + (year - 1900.0) / 50.0 * (kDeltaT.front() + 2.8);
+  if (year >= kLast) return kDeltaT.back() + 0.047 * (year - kLast);
+  const double x = (year - kFirst) / kStep;
+  const auto i = static_cast<std::size_t>(x);
+  return kDeltaT[i] + (kDeltaT[i + 1] - kDeltaT[i]) * (x - static_cast<double>(i));
 }
 
 // A Julian date in the two parts that ERFA likes.
@@ -52,19 +60,26 @@ JulianDate julianDate(const UtcTime& t) {
   return {mjdZero + mjd, (t.hour * 3600.0 + t.minute * 60.0 + t.second) / ERFA_DAYSEC};
 }
 
-// Terrestrial time from UTC. Since 1972 by the leap seconds that ERFA knows (after its last one the offset
-// stays); before, UTC is read as UT1.
-JulianDate terrestrialTime(const UtcTime& t, const JulianDate& utc) {
-  double offset = 0.0;
-  if (t.year >= 1972) {
-    double leapSeconds = 0.0;
-    eraDat(t.year, t.month, t.day, 0.0,
-           &leapSeconds);  // a warning status for years beyond the table is expected
-    offset = leapSeconds + ERFA_TTMTAI;
-  } else {
-    offset = deltaTSeconds(t.year + (t.month - 0.5) / 12.0);
-  }
-  return {utc.day, utc.fraction + offset / ERFA_DAYSEC};
+double decimalYear(const UtcTime& t) {
+  return t.year + (t.month - 1 + (t.day - 1) / 31.0) / 12.0;
+}
+
+// The two clocks that the sky needs: terrestrial time for the orbits, universal time for the earth's turning.
+struct Clocks {
+  JulianDate tt, ut1;
+};
+
+// Since 1972 UTC leads to TT by the leap seconds that ERFA knows (after its last one the offset stays) and
+// from there to UT1. Before, UTC is read as UT1.
+Clocks clocksAt(const UtcTime& t) {
+  const JulianDate utc = julianDate(t);
+  const double deltaT = deltaTSeconds(decimalYear(t));
+  double leapSeconds = 0.0;
+  if (t.year >= 1972)
+    eraDat(t.year, t.month, t.day, 0.0, &leapSeconds);  // only warns about years beyond its table
+  const double ttMinusUtc = t.year >= 1972 ? leapSeconds + ERFA_TTMTAI : deltaT;
+  return {{utc.day, utc.fraction + ttMinusUtc / ERFA_DAYSEC},
+          {utc.day, utc.fraction + (ttMinusUtc - deltaT) / ERFA_DAYSEC}};
 }
 
 glm::dvec3 toVec(const double p[3]) {
@@ -93,9 +108,7 @@ double moonPhaseMagnitudes(double phaseAngleRad) {
 }  // namespace
 
 Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
-  const JulianDate ut1 =
-      julianDate(time);  // UTC stays within 0.9 s of UT1: at most 0.004 degrees of hour angle
-  const JulianDate tt = terrestrialTime(time, ut1);  // TDB differs by 2 ms at most
+  const auto [tt, ut1] = clocksAt(time);  // TDB differs from TT by 2 ms at most
 
   // Sun: astrometric direction of date, then annual aberration (20 arc seconds) from the earth's barycentric
   // velocity.
