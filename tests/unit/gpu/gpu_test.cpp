@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "welkin/core/error.h"
@@ -301,6 +304,45 @@ void main() {
   const Volume<float> result = volume.read();
   EXPECT_EQ(result.at(7, 5, 3), 357.0f);
   EXPECT_EQ(result.at(0, 0, 7), 700.0f);
+}
+
+// The software rasteriser shares its work among threads; the bits must not show it. It reads their number
+// once in a process, so each count gets a process of its own, which hands its picture over in a file.
+TEST(GpuThreads, PictureIsTheSameForAnyNumber) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto fileFor = [](const char* threads) { return testing::TempDir() + "welkin-threads-" + threads; };
+  const auto drawAndExit = [&](const char* threads) {
+    setenv("LP_NUM_THREADS", threads, 1);
+    Context context;
+    const Texture2D texture(257, 129, {.format = Format::kRgba32F});
+    const Framebuffer target(texture);
+    target.clear();
+    Program program = fragmentProgram(R"(uniform float uShift;
+void main() {
+  vec2 p = gl_FragCoord.xy * 0.0173 + uShift;
+  oColour = vec4(sin(p.x * p.y), exp(-p.x), pow(abs(cos(p.y)), 0.37), dFdx(p.x * p.x));
+})");
+    const FullscreenTriangle triangle;
+    for (int i = 0; i < 8; ++i) {
+      program.set("uShift", static_cast<float>(i) * 0.1f);
+      triangle.draw(program, target, {.tile = {}, .blend = Blend::kAdd});
+    }
+    const Image<float> picture = target.readPicture();
+    std::FILE* file = std::fopen(fileFor(threads).c_str(), "wb");
+    std::fwrite(picture.data.data(), sizeof(float), picture.data.size(), file);
+    std::fclose(file);
+    std::exit(0);
+  };
+  std::string pictures[2];
+  int i = 0;
+  for (const char* threads : {"1", "2"}) {
+    EXPECT_EXIT(drawAndExit(threads), testing::ExitedWithCode(0), "");
+    std::ifstream in(fileFor(threads), std::ios::binary);
+    pictures[i++].assign(std::istreambuf_iterator<char>(in), {});
+    std::remove(fileFor(threads).c_str());
+  }
+  EXPECT_EQ(pictures[0].size(), 257u * 129 * 16);
+  EXPECT_TRUE(pictures[0] == pictures[1]);
 }
 
 // Without EGL there is a message, not an end of the process. EGL's dispatcher is given a vendor that does not

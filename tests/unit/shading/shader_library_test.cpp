@@ -149,7 +149,7 @@ TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
 }
 
 // Every entry point compiles for the desktop, and all but compute for the web as well, where drivers of
-// desktops are laxer.
+// desktops are laxer; with no layer of cloud, with one and with the most there are.
 TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
   for (const bool es : {false, true}) {
     gpu::Context context({.api = es ? gpu::Api::kGles : gpu::Api::kGl, .debug = true});
@@ -157,16 +157,18 @@ TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
     const ShaderSource triangle = assembleShader("pass/fullscreen.vert", dialect);
     const ShaderSource nothing{
         std::string(es ? "#version 300 es" : "#version 330 core") + "\nvoid main() {}\n", {"-"}};
-    for (const std::string& name : shaderNames()) {
-      SCOPED_TRACE(name + (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
-      if (name.ends_with(".frag")) {
-        EXPECT_NO_THROW(gpu::Program::graphics(triangle, assembleShader(name, dialect)));
-      } else if (name.ends_with(".vert")) {
-        EXPECT_NO_THROW(gpu::Program::graphics(assembleShader(name, dialect), nothing));
-      } else if (name.ends_with(".comp") && !es && context.hasCompute()) {
-        EXPECT_NO_THROW(gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute)));
+    for (const std::string& name : shaderNames())
+      for (const char* layers : {"0", "1", "8"}) {
+        SCOPED_TRACE(name + " with " + layers + " layers" + (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
+        const ShaderDefine defines[] = {{"WELKIN_LAYERS", layers}};
+        if (name.ends_with(".frag")) {
+          EXPECT_NO_THROW(gpu::Program::graphics(triangle, assembleShader(name, dialect, defines)));
+        } else if (name.ends_with(".vert")) {
+          EXPECT_NO_THROW(gpu::Program::graphics(assembleShader(name, dialect, defines), nothing));
+        } else if (name.ends_with(".comp") && !es && context.hasCompute()) {
+          EXPECT_NO_THROW(gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute, defines)));
+        }
       }
-    }
     EXPECT_TRUE(context.takeErrors().empty());
   }
 }
