@@ -165,8 +165,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
 
   InfoArgs info;
   CLI::App* infoApp =
-      root.add_subcommand("info", "Say what a file holds: a scene file with every default filled in");
-  infoApp->add_option("file", info.file, "scene file (.toml)")->type_name("FILE");
+      root.add_subcommand("info", "Say what a file holds: a scene file with all its defaults, or a picture");
+  infoApp->add_option("file", info.file, "scene file .toml, or picture .png .exr .hdr")->type_name("FILE");
   infoApp->add_flag("--json", info.json, "as JSON");
 
   Flag topic;

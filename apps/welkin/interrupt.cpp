@@ -10,7 +10,9 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-extern "C" void setInterrupted(int) { interrupted = 1; }
+extern "C" void setInterrupted(int) {
+  interrupted = 1;
+}
 
 }  // namespace
 

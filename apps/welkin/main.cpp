@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: chooses the command and turns exceptions into messages and exit codes.
-// 0: done. 1: what it was given to work on is wrong, or something failed. 2: called wrongly. 130:
-// interrupted.
+// 0: done. 1: what it was given to work on is wrong, or something failed. 2: called wrongly.
+// 130: interrupted.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -10,6 +10,7 @@
 
 #include "command_line.h"
 #include "help_command.h"
+#include "info_command.h"
 #include "metar_command.h"
 #include "render_command.h"
 #include "render_settings.h"

@@ -16,19 +16,25 @@ std::string durationText(double seconds) {
   return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-ProgressLine::ProgressLine(std::string label)
-    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1), begin_(Clock::now()), last_(begin_) {}
+ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressLine::show(double fraction) {
+void ProgressLine::begin(std::string label) {
+  label_ = std::move(label);
+  begin_ = last_ = Clock::now();
   if (!terminal_) return;
-  const Clock::time_point now = Clock::now();
-  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
-  last_ = now;
   drawn_ = true;
+  fmt::print(stderr, "\r{} ...\033[K", label_);
+  std::fflush(stderr);
+}
+
+void ProgressLine::show(double fraction) {
+  const Clock::time_point now = Clock::now();
+  if (!terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   fmt::print(stderr, "\r{} {:3.0f} %", label_, 100.0 * fraction);
   // An estimate from the first moments would only be wrong.

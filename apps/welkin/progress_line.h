@@ -13,12 +13,14 @@ std::string durationText(double seconds);
 
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string label);
+  ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();  // wipes the line
 
-  // fraction of the whole work done, in [0, 1]. Draws at most ten times a second.
+  // Starts on a part of the work, whose time is estimated on its own: "drawing".
+  void begin(std::string label);
+  // The fraction of that part that is done, in [0, 1]. Draws at most ten times a second.
   void show(double fraction);
 
  private:

@@ -10,6 +10,7 @@
 #include "progress_line.h"
 #include "render_settings.h"
 #include "report.h"
+#include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/io/atomic_file.h"
 #include "welkin/render/sky_renderer.h"
@@ -31,6 +32,16 @@ void setThreads(int threads) {
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads == 1 ? 0 : threads).c_str(), 1);
 }
 
+render::SkyRenderer makeRenderer() {
+  try {
+    return render::SkyRenderer();
+  } catch (const GpuError& e) {
+    throw GpuError(
+        std::string(e.what()) +
+        "; expected EGL from a graphics driver or from Mesa's software renderer (package libgl1-mesa-dri)");
+  }
+}
+
 // What a sequence holds on to from frame to frame.
 class Sequence {
  public:
@@ -42,9 +53,9 @@ class Sequence {
     scene::weatherOf(settings_.scene);  // a report that cannot be read is said before anything heavy starts
     setThreads(settings_.threads);
     catchInterrupts();
-    ProgressLine progress("drawing");
-    progress.show(0.0);
-    render::SkyRenderer renderer;
+    ProgressLine progress;
+    progress.begin("building the sky");
+    render::SkyRenderer renderer = makeRenderer();
     report_.device = renderer.deviceName();
     report_.passes.push_back({"start", msSince(begin)});
     for (std::int64_t i = 0; i < frames_; ++i) drawFrame(i, renderer, progress);
@@ -59,6 +70,7 @@ class Sequence {
     throwIfInterrupted();
     const scene::SkyState state = stateOf(i);
     const double buildMs = msSince(begin);
+    if (i == 0) progress.begin("drawing");
     throwIfInterrupted();
     const render::Picture picture = renderer.draw(state, [&](double fraction) {
       throwIfInterrupted();

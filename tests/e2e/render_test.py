@@ -59,6 +59,12 @@ class Stills(ProgramTest):
         for key in ("moon", "notes", "device", "metar", "heading_deg", "exposure_ev", "place"):
             self.assertIn(key, r)
         self.assertNotIn("frames", r)
+        info = json.loads(self.succeed("info", "a.exr", "--json"))
+        self.assertEqual((info["width"], info["height"], info["channels"]), (96, 54, 3))
+        self.assertGreater(info["mean"], 500)  # cd/m2 at noon
+        self.assertGreaterEqual(info["min"], 0)
+        self.assertEqual(info["metadata"]["welkin_time"], r["time"])
+        self.assertEqual(info["metadata"]["welkin_metar"], r["metar"])
 
     def test_projections_have_their_sizes(self):
         for projection, size in (("fisheye", "64x64"), ("equirect", "96x48"), ("cubemap", "96x16")):
