@@ -272,13 +272,14 @@ WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler
 
 // Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
 // the total amount of starlight". What the air takes from the straight ray it partly gives back from the rest of the dome, more so over
-// bright ground: between half (black ground) and all (white) of the dome's luminance, as from any conservative slab under a uniform sky.
+// bright ground: between half (black ground) and all (white) of the dome's mean luminance, as from any conservative slab under a uniform sky.
+WELKIN_CONST float kAirglowMean = 1.71f;  // of the dome, weighted by the cosine, over the zenith's (van Rhijn at 90 km)
 WELKIN_FN vec3 atmosphereAirglow(Atmosphere a, sampler2D transmittanceLut, float h, float mu) {
   if (h >= a.airglowAltitudeM) return vec3(0.0f);
   float q = (a.seaRadiusM + h) / (a.seaRadiusM + a.airglowAltitudeM);
   float vanRhijn = 1.0f / sqrt(max(1.0f - q * q * (1.0f - mu * mu), 1e-4f));
   vec3 through = atmosphereTransmittance(a, transmittanceLut, h, mu);
-  vec3 back = 0.5f * (vec3(1.0f) + a.groundAlbedo);
+  vec3 back = 0.5f * kAirglowMean * (vec3(1.0f) + a.groundAlbedo);
   return a.airglow * (vanRhijn * through + back * (vec3(1.0f) - through));
 }
 

@@ -33,10 +33,10 @@ constexpr double kOzoneHalfWidthM = 15e3;
 // to 2.
 constexpr glm::dvec3 kAngstromWavelengthNm{640.4, 545.6, 441.6};
 
-// Colour of the natural night sky without moon: near white, a little warm (C. Leinert et al. 1998, "The 1997
-// reference of diffuse night sky brightness": the sum of airglow, zodiacal light and starlight has B - V of
-// about 0.9 to the sun's 0.65).
-constexpr glm::vec3 kAirglowColour{1.12f, 0.98f, 0.85f};
+// Colour of the natural night sky without moon, photometric weight 1: about that of sunlight (C. Leinert et
+// al. 1998, "The 1997 reference of diffuse night sky brightness": airglow, zodiacal light and starlight
+// together are little redder than the sun).
+constexpr glm::vec3 kAirglowColour{1.0894f, 0.9776f, 0.9582f};
 constexpr double kAirglowAltitudeM = 90e3;
 
 // Haze is coloured where its particles are small and grey where they are fog: exponent 1.6 (dry continental
