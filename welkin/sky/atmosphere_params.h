@@ -15,8 +15,7 @@ struct AtmosphereParams {
   double aerosolAlbedo = 0.90;          // single-scattering albedo of the haze
   double aerosolG = 0.56;               // mean cosine of its phase function
   double ozoneDu = 344.0;               // ozone column, Dobson units; 344: mid-latitudes (ASTM G173)
-  double airglowCdPerM2 =
-      1.7e-4;  // zenith luminance of the moonless night sky (22.0 mag per square arc second)
+  double airglowCdPerM2 = 1.7e-4;       // zenith luminance of the moonless night sky (22.0 mag/arcsec2)
 };
 void describe(AtmosphereParams& p, ParamVisitor& v);
 
