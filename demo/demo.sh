@@ -65,13 +65,13 @@ cells=()
 for entry in "${scenes[@]}"; do cells+=(-label "${entry#*|}" "$out/${entry%%|*}.png"); done
 cells+=(-label "Fisheye dome of the same cumulus" "$out/fisheye.png")
 cells+=(-label "Environment map (environment.exr), exposed" "$out/environment_preview.png")
-for share in 0 50 99; do
+for share in 0 99; do
   frame="$work/lapse_$share.png"
   count="$(ffprobe -v error -count_packets -show_entries stream=nb_read_packets -of csv=p=0 "$out/time_lapse.mp4")"
   ffmpeg -v error -i "$out/time_lapse.mp4" -vf "select=eq(n\,$(((count - 1) * share / 99)))" -frames:v 1 -y "$frame" </dev/null
   cells+=(-label "Time-lapse, frame $(((count - 1) * share / 99 + 1)) of $count" "$frame")
 done
 montage "${cells[@]}" -font "$font" -pointsize 17 -fill '#e8e8e8' -background '#202428' -tile 3x \
-  -geometry '480x270>+10+8' "png24:$work/sheet.png"
+  -geometry '480x270+10+8' "png24:$work/sheet.png"
 mv "$work/sheet.png" "$out/contact_sheet.png"
 echo "   $out/contact_sheet.png"
