@@ -13,6 +13,7 @@ The rules:
   * OpenGL and EGL headers are included by welkin/gpu alone.
   * A source file has at most 600 lines and says its licence in its first lines.
   * docs/architecture.md and docs/architecture.svg show the edges that are there.
+  * Links in Markdown files that lead into the repository lead somewhere.
 
 Python's standard library only.
 """
@@ -27,6 +28,7 @@ SOURCE_FOLDERS = ["apps", "bench", "bindings", "cmake", "demo", "examples", "sha
 CPP_SUFFIXES = {".h", ".cpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 GRAPHICS_HEADER = re.compile(r"^(epoxy|GL|GLES[23]?|EGL|KHR)/")
+LINK = re.compile(r"\]\(([^)#\s:]+)(?:#[^)]*)?\)")
 TABLE_BEGIN, TABLE_END = "<!-- edges: begin (tools/check_house.py --write) -->", "<!-- edges: end -->"
 
 
@@ -149,6 +151,15 @@ def check_cpp(house, path, lines):
             house.problem(path, number, f'"{target}": the library includes "welkin/..." and "shaders/lib/..." only')
 
 
+def check_links(house):
+    pages = [*house.root.glob("*.md"), *(p for f in [*SOURCE_FOLDERS, "docs"] for p in (house.root / f).rglob("*.md"))]
+    for page in sorted(pages):
+        for number, line in enumerate(page.read_text().splitlines(), 1):
+            for target in LINK.findall(line):
+                if not (page.parent / target).exists():
+                    house.problem(page, number, f"the link to {target} leads nowhere")
+
+
 # --- docs/architecture ---------------------------------------------------------------------------------------------------------
 
 def edge_table(house):
@@ -264,6 +275,7 @@ def main(arguments):
         document(house, write)
     for path in source_files(house.root):
         check_file(house, path)
+    check_links(house)
     for problem in house.problems:
         print(problem)
     if not house.problems:

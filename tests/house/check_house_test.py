@@ -121,6 +121,10 @@ class CheckHouseTest(unittest.TestCase):
         self.put("tests/free.cpp", "// mine\n")
         self.assert_broken("tests/free.cpp:1: no SPDX")
 
+    def test_link_that_leads_nowhere(self):
+        self.put("README.md", "[a](docs/architecture.md#part) [b](https://example.org/x)\n![c](docs/none.png)\n")
+        self.assert_broken("README.md:2: the link to docs/none.png leads nowhere")
+
     def test_new_edge_makes_the_document_untrue(self):
         self.put("welkin/gpu/CMakeLists.txt", HASH_SPDX + "welkin_module(gpu SOURCES a.cpp DEPENDS core sky)\n")
         code, out = self.check()
