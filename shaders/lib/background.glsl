@@ -29,23 +29,39 @@ void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   inscatter *= uHazeLight;
 }
 
+// A disc as pixels see it: at least a pixel and a half across and with an edge a pixel wide, as bright as keeps its light. So the
+// sum over a picture, an environment map above all, is the disc's illuminance whatever the pixels' size.
+struct Disc {
+  float x;      // distance from the centre in radii
+  float share;  // of luminance that is left
+};
+
+Disc discAt(vec3 dir, vec3 centre, float radius, float pixelRad) {
+  float seen = max(radius, 0.75 * pixelRad);
+  float angle = length(dir - centre);
+  float edge = clamp((seen - angle) / pixelRad + 0.5, 0.0, 1.0);
+  // A linear edge of width w about radius r holds r^2 + w^2 / 12 times pi.
+  float area = (seen * seen + pixelRad * pixelRad / 12.0) / (radius * radius);
+  return Disc(min(angle / seen, 1.0), edge / area);
+}
+
 // Limb darkening of the sun in the visible, D. Hestroffer and C. Magnan 1998 (exponent for 550 nm), mean 1 over the disc.
-vec3 sunDisc(vec3 dir) {
-  float x = length(cross(dir, uSunDirection)) / uSunRadius;
-  if (x >= 1.0 || dot(dir, uSunDirection) < 0.0) return vec3(0.0);
-  float exponent = 0.41;
-  return uSunLuminance * pow(1.0 - x * x, 0.5 * exponent) * (0.5 * exponent + 1.0);
+vec3 sunDisc(vec3 dir, float pixelRad) {
+  const float exponent = 0.41;
+  Disc disc = discAt(dir, uSunDirection, uSunRadius, pixelRad);
+  float limb = pow(max(1.0 - disc.x * disc.x, 0.02), 0.5 * exponent) * (0.5 * exponent + 1.0);
+  return uSunLuminance * (disc.share * limb);
 }
 
 // The moon's disc, lit by the sun as a dusty sphere (Lommel-Seeliger); the dark part keeps a trace of earthshine.
-vec3 moonDisc(vec3 dir) {
+vec3 moonDisc(vec3 dir, float pixelRad) {
+  Disc disc = discAt(dir, uMoonDirection, uMoonRadius, pixelRad);
+  if (disc.share <= 0.0) return vec3(0.0);
   vec3 across = dir - uMoonDirection * dot(dir, uMoonDirection);
-  float x2 = dot(across, across) / (uMoonRadius * uMoonRadius);
-  if (x2 >= 1.0 || dot(dir, uMoonDirection) < 0.0) return vec3(0.0);
-  float mu = sqrt(1.0 - x2);
-  vec3 normal = across / uMoonRadius - uMoonDirection * mu;
+  float mu = sqrt(1.0 - disc.x * disc.x);
+  vec3 normal = normalize(across + 1e-9) * disc.x - uMoonDirection * mu;
   float mu0 = max(dot(normal, uSunDirection), 0.0);
-  return uMoonLuminance * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+  return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
 }
 
 vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
@@ -70,7 +86,7 @@ vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad, float dither) 
   }
   vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
   if (uDiscs > 0.5) {
-    vec3 disc = sunDisc(dir) + moonDisc(dir);
+    vec3 disc = sunDisc(dir, pixelRad) + moonDisc(dir, pixelRad);
     if (disc.x + disc.y > 0.0)
       sky += disc * atmosphereTransmittance(uAtmosphere, uTransmittance, uEyeM + uGroundAltitudeM, dir.z);
   }

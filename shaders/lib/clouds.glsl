@@ -82,3 +82,8 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
   float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
   return layer.extinction * body * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
 }
+
+// The longest step that resolves a layer: a share of its depth and of its mean free path.
+WELKIN_FN float cloudStepM(CloudLayer layer) {
+  return min(0.25f / layer.extinction, 0.07f * (layer.topM - layer.baseM));
+}

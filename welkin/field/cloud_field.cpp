@@ -49,9 +49,9 @@ std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed) {
   for (std::size_t i = 0; i < maps[0].data.size(); ++i)
     for (int c = 0; c < 3; ++c) noise->placement.data[3 * i + c] = maps[c].data[i];
   noise->shape = noise::billowVolume(
-      hashOf(seed, 4), kShapeSize, {.octaves = 4, .frequency = 5, .lacunarity = 2, .persistence = 0.55f}, 0.65f);
+      hashOf(seed, 4), kShapeSize, {.octaves = 4, .frequency = 5, .lacunarity = 2, .persistence = 0.5f}, 0.85f);
   noise->detail = noise::billowVolume(
-      hashOf(seed, 5), kDetailSize, {.octaves = 3, .frequency = 5, .lacunarity = 2, .persistence = 0.6f}, 0.8f);
+      hashOf(seed, 5), kDetailSize, {.octaves = 3, .frequency = 5, .lacunarity = 2, .persistence = 0.6f}, 0.9f);
   return noise;
 }
 

@@ -49,7 +49,8 @@ CloudLayer calibrated(const CloudField& field, int layer, double fraction, const
     const float middle = 0.5f * (low + high);
     (coverAt(middle) >= target ? low : high) = middle;
   }
-  result.threshold = target >= 0.99 ? low : 0.5f * (low + high);
+  // An overcast that is only just thick enough to count as cloud everywhere would show blue through: half a deviation more.
+  result.threshold = target >= 0.99 ? low - 0.5f : 0.5f * (low + high);
   return result;
 }
 

@@ -17,7 +17,7 @@ constexpr int kMostSamples = 6;  // of density along the line between two slices
 }  // namespace
 
 LightVolumePass::LightVolumePass()
-    : up_(fullscreenProgram("pass/light_volume_up.frag")), down_(fullscreenProgram("pass/light_volume_down.frag")) {
+    : down_(fullscreenProgram("pass/light_volume_down.frag")) {
   for (gpu::Texture2D& t : neighbour_) t = gpu::Texture2D(kSide, kSide, {.format = gpu::Format::kRgba32F});
 }
 
@@ -30,13 +30,14 @@ void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVol
     volume_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
   }
   if (layout.heightsM.empty()) return;  // a clear sky: nothing asks for the volume
-  setUniforms(up_, shading::cloudUniforms(state));
-  up_.set("uLine", layout.line);
+  gpu::Program& up = up_.forLayers(state.clouds->layers().size());
+  setUniforms(up, shading::cloudUniforms(state));
+  up.set("uLine", layout.line);
   down_.set("uLine", layout.line);
-  for (int c = 0; c < cascades; ++c) sweepCascade(layout, c, clouds);
+  for (int c = 0; c < cascades; ++c) sweepCascade(up, layout, c, clouds);
 }
 
-void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds) {
+void LightVolumePass::sweepCascade(gpu::Program& up, const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds) {
   const int slices = static_cast<int>(layout.heightsM.size());
   const float halfM = layout.kHalfM[static_cast<std::size_t>(cascade)];
   const float voxelM = 2.0f * halfM / kSide;
@@ -48,7 +49,7 @@ void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int
     gpu::Framebuffer(neighbour_[0]).clear();
   };
 
-  up_.set("uHalfM", halfM);
+  up.set("uHalfM", halfM);
   clearNeighbour();
   for (int k = slices - 1; k >= 0; --k) {
     const float height = layout.heightsM[static_cast<std::size_t>(k)];
@@ -56,12 +57,12 @@ void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int
     const float shiftM = (above - height) / layout.line.z;
     gpu::Framebuffer target(neighbour_[1]);
     target.attachSlice(1, upward_, layer(k));
-    clouds.bind(up_);
-    up_.bind("uAbove", neighbour_[0]);
-    up_.set("uHeightM", height);
-    up_.set("uHeightAboveM", above);
-    up_.set("uSamples", std::clamp(static_cast<int>(std::ceil(shiftM / voxelM)), 2, kMostSamples));
-    triangle_.draw(up_, target);
+    clouds.bind(up);
+    up.bind("uAbove", neighbour_[0]);
+    up.set("uHeightM", height);
+    up.set("uHeightAboveM", above);
+    up.set("uSamples", std::clamp(static_cast<int>(std::ceil(shiftM / voxelM)), 2, kMostSamples));
+    triangle_.draw(up, target);
     std::swap(neighbour_[0], neighbour_[1]);
   }
 

@@ -8,6 +8,7 @@
 #include "welkin/gpu/program.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/programs.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin::render {
@@ -22,10 +23,11 @@ class LightVolumePass {
   const gpu::Texture3D& volume() const { return volume_; }
 
  private:
-  void sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds);
+  void sweepCascade(gpu::Program& up, const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds);
 
   gpu::FullscreenTriangle triangle_;
-  gpu::Program up_, down_;
+  LayeredProgram up_{"pass/light_volume_up.frag"};
+  gpu::Program down_;
   gpu::Texture2D neighbour_[2];   // the last slice swept, and the next
   gpu::Texture3D upward_;         // what the first sweep found
   gpu::Texture3D volume_;

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/render/programs.h"
 
-#include <span>
 #include <type_traits>
-
-#include "welkin/shading/shader_library.h"
 
 namespace welkin::render {
 
-gpu::Program fullscreenProgram(std::string_view fragment) {
+gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shading::ShaderDefine> defines) {
   return gpu::Program::graphics(shading::assembleShader("pass/fullscreen.vert", shading::ShaderDialect::kGl330),
-                                shading::assembleShader(fragment, shading::ShaderDialect::kGl330));
+                                shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
+}
+
+gpu::Program& LayeredProgram::forLayers(std::size_t count) {
+  gpu::Program& program = programs_[count];
+  if (program.id() == 0) {
+    const shading::ShaderDefine layers[] = {{"WELKIN_LAYERS", std::to_string(count)}};
+    program = fullscreenProgram(fragment_, layers);
+  }
+  return program;
 }
 
 void setUniforms(gpu::Program& program, const shading::Uniforms& uniforms) {

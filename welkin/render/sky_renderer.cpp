@@ -29,7 +29,7 @@ float quasiRandom1(int i) { return static_cast<float>(std::fmod(0.5 + 0.61803398
 struct SkyRenderer::Impl {
   gpu::Context context;
   gpu::FullscreenTriangle triangle;
-  gpu::Program sky = fullscreenProgram("pass/sky.frag");
+  LayeredProgram sky{"pass/sky.frag"};
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
 };
@@ -57,7 +57,8 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   done("light volume");
 
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  gpu::Program& p = impl_->sky;
+  gpu::Program& p = impl_->sky.forLayers(state.clouds->layers().size());
+  done("compile");
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));
   setUniforms(p, shading::marchUniforms(settings));

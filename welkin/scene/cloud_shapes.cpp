@@ -11,60 +11,61 @@
 namespace welkin::scene {
 namespace {
 
-// One genus. Lengths are shares of the layer's depth, within limits, unless they end in M: cells are about as wide as clouds are deep
-// (Stull, Practical Meteorology, 6.6). Cells are a twelfth of cellM, blobs of the 3D noises a fifth of their period.
+// One genus. Lengths are shares of the layer's depth, within limits, unless they end in M: cells are about as
+// wide as clouds are deep (Stull, Practical Meteorology, 6.6). Cells are a twelfth of cellM, blobs of the 3D
+// noises a fifth of their period.
 struct Habit {
-  double cell, cellMinM, cellMaxM;   // distance between cells
-  double patchM;                     // size of mesoscale patches
+  double cell, cellMinM, cellMaxM;  // distance between cells
+  double patchM;                    // size of mesoscale patches
   double cellWeight, fractalWeight, patchWeight;
-  double warp;                       // share of the cell
-  double stretch;                    // along the wind
+  double warp;     // share of the cell
+  double stretch;  // along the wind
   double dome, domePower, belly, anvil;
   double bottomSoft, topSoft;
-  double blob, blobMinM, blobMaxM;   // largest blob of the 3D noise
+  double blob, blobMinM, blobMaxM;  // largest blob of the 3D noise
   double shapeAmount, shapeAtBase, shapeStretch;
-  double detailM;                    // largest bump of the fine noise
+  double detailM;  // largest bump of the fine noise
   double detailAmount;
   double edge, lift;
-  double shear;                      // displacement of the top, share of the depth
-  double riseMps;                    // speed at which shapes move up through the cloud
+  double shear;    // displacement of the top, share of the depth
+  double riseMps;  // speed at which shapes move up through the cloud
 };
 
 // In the order of weather::Genus. Chosen by eye against photographs of the International Cloud Atlas.
 constexpr std::array<Habit, 11> kHabits = {{
     // cumulus: flat bases, domed towers, cauliflower
-    {1.7, 700, 4000, 9000, .80, .35, .50, .35, 1.0, 1.15, 1.7, 0, 0, .05, .06, .50, 250, 900, .42, .22, 1.0, 95, .13, .10,
-     .75, .15, 1.2},
+    {1.7, 700, 4000, 9000, .80, .35, .50, .35, 1.0, 1.15, 1.9, .45, 0, .05,
+     .06, .42, 250,  900,  .48, .22, 1.0, 75,  .07, .07,  .75, .15, 1.2},
     // stratocumulus: lumps and rolls, shallow, flat above and below
-    {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0, .12, .18, .90, 250, 700, .38, .45, 1.2, 110, .14, .30,
-     .60, .10, .5},
+    {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0, .12,
+     .18, .90, 250,  700,   .38, .45, 1.2, 110, .14, .30, .60, .10, .5},
     // stratus: a featureless sheet
-    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, .30, 0, .25, .35, 1.2, 300, 900, .25, .70, 1.5, 160, .10, .80,
-     .30, .10, .2},
+    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, .30, 0, .25,
+     .35, 1.2,  300,  900,   .25, .70, 1.5, 160, .10, .80, .30, .10, .2},
     // nimbostratus: deep, dark, ragged beneath
-    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0, .12, .25, .30, 400, 1200, .35, .80, 1.3, 220, .12, .60,
-     .30, .20, .4},
+    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0, .12,
+     .25, .30,  400,  1200,  .35, .80, 1.3, 220, .12, .60, .30, .20, .4},
     // cumulonimbus: towers with an anvil
-    {1.1, 6000, 14000, 32000, .85, .35, .40, .30, 1.0, 1.10, 1.3, 0, .85, .02, .05, .22, 900, 2200, .42, .25, 1.0, 240, .12,
-     .10, .55, .22, 4.0},
+    {2.2, 12000, 30000, 60000, .80, .30, .50, .25, 1.0, .80, 1.6, .10, .45, .02,
+     .06, .16,  700,  1800,  .24, .40, 1.0, 200, .022, .03,  .55, .15, 4.0},
     // altocumulus: a field of small cells in patches
-    {1.2, 350, 800, 12000, .80, .30, .52, .45, 1.3, .55, 2.0, .35, 0, .20, .25, .55, 120, 300, .40, .70, 1.2, 60, .15, .35,
-     .20, .20, .3},
+    {1.2, 350, 800, 12000, .80, .30, .52, .45, 1.3, .55, 2.0, .35, 0, .20,
+     .25, .55, 120, 300,   .40, .70, 1.2, 60,  .15, .35, .20, .20, .3},
     // altostratus: a thin wide veil, streaked
-    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 2.0, .35, 0, .30, .35, .50, 500, 1500, .30, .80, 2.5, 260, .10, .90,
-     .10, .60, .2},
+    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 2.0, .35, 0, .30,
+     .35, .50,  500,  1500,  .30, .80, 2.5, 260, .10, .90, .10, .60, .2},
     // cirrus: fibres drawn out by wind shear
-    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60, 1.0, .30, 0, .25, .25, .70, 350, 700, .55, .90, 7.0, 120, .30, 1.30,
-     .00, 4.0, .3},
+    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60,  1.0, .30, 0, .25,
+     .25, .70,  350,  700,   .55, .90, 7.0, 120,  .30, 1.30, .00, 4.0, .3},
     // cirrocumulus: grains and ripples
-    {.9, 180, 380, 9000, .82, .25, .52, .50, 1.8, .45, 2.0, .35, 0, .25, .25, .40, 90, 200, .40, .80, 1.8, 45, .15, .60, .00,
-     .50, .2},
+    {.9,  180, 380, 9000, .82, .25, .52, .50, 1.8, .45, 2.0, .35, 0, .25,
+     .25, .40, 90,  200,  .40, .80, 1.8, 45,  .15, .60, .00, .50, .2},
     // cirrostratus: an even veil
-    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25, 2.0, .25, 0, .30, .30, .80, 700, 1500, .22, .90, 5.0, 300, .10, 1.50,
-     .00, 2.0, .1},
+    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25,  2.0, .25, 0, .30,
+     .30, .80,  700,  1500,  .22, .90, 5.0, 300, .10, 1.50, .00, 2.0, .1},
     // fog
-    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 1.6, 0, 0, .001, .40, 1.2, 90, 220, .30, .40, 1.5, 60, .12, .60, .00,
-     .20, .1},
+    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 1.6, 0,   0, .001,
+     .40, 1.2, 90,   220,  .30, .40, 1.5, 60,  .12, .60, .00, .20, .1},
 }};
 
 }  // namespace
@@ -79,8 +80,9 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   const double depth = layer.topM - layer.baseM;
   const double cell = std::clamp(habit.cell * depth, habit.cellMinM, habit.cellMaxM);
   const double blob = std::clamp(habit.blob * depth, habit.blobMinM, habit.blobMaxM);
-  const double weights = std::sqrt(habit.cellWeight * habit.cellWeight + habit.fractalWeight * habit.fractalWeight +
-                                   habit.patchWeight * habit.patchWeight);
+  const double weights =
+      std::sqrt(habit.cellWeight * habit.cellWeight + habit.fractalWeight * habit.fractalWeight +
+                habit.patchWeight * habit.patchWeight);
   const double towards = radians(layer.windFromDeg + 180.0);
   const glm::dvec2 windDirection(std::sin(towards), std::cos(towards));
   const glm::dvec2 driftM = windDirection * (layer.windSpeedMps * secondsAfter);
@@ -115,14 +117,15 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.shapeStretch = static_cast<float>(habit.shapeStretch);
   s.detailM = static_cast<float>(5.0 * habit.detailM);
   s.detailAmount = static_cast<float>(habit.detailAmount);
-  // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the others and the
-  // sum never returns, while any instant can be had directly.
-  s.shapeShiftM = glm::vec3(-0.06 * layer.windSpeedMps * secondsAfter, 0.0, habit.riseMps * secondsAfter + offsetZ);
+  // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the
+  // others and the sum never returns, while any instant can be had directly.
+  s.shapeShiftM =
+      glm::vec3(-0.06 * layer.windSpeedMps * secondsAfter, 0.0, habit.riseMps * secondsAfter + offsetZ);
   s.detailShiftM =
       glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
   s.edge = static_cast<float>(habit.edge);
   s.lift = static_cast<float>(habit.lift);
-  s.reachM = static_cast<float>(std::min(0.22 * cell, 0.5 * depth));
+  s.reachM = static_cast<float>(std::min(0.08 * cell, 0.25 * depth));
   return s;
 }
 

@@ -9,8 +9,8 @@
 
 namespace welkin::scene {
 
-// The layer's shape `secondsAfter` the moment of the weather. `seed` is the layer's own. The threshold is that of half cover, to be
-// calibrated.
+// The layer's shape `secondsAfter` the moment of the weather. `seed` is the layer's own. The threshold is
+// that of half cover, to be calibrated.
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter);
 
 // Whether the layer is made of ice.

@@ -21,11 +21,12 @@ constexpr int kReportDirections = 4000;  // for the delivered numbers; calibrati
 glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light) {
   const double mu = light.direction.z;
   if (mu <= 0.0) return glm::vec3(0.0f);
-  return light.illuminance * atmosphere.transmittanceToSpace(atmosphere.groundAltitudeM(), mu) * static_cast<float>(mu);
+  return light.illuminance * atmosphere.transmittanceToSpace(atmosphere.groundAltitudeM(), mu) *
+         static_cast<float>(mu);
 }
 
-// Mean share of diffuse light that passes the layers: the clear part of each, and the cloudy part at the Eddington transmittance
-// of conservative cloud for diffuse light, 1 / (1 + 3/4 (1 - g) tau).
+// Mean share of diffuse light that passes the layers: the clear part of each, and the cloudy part at the
+// Eddington transmittance of conservative cloud for diffuse light, 1 / (1 + 3/4 (1 - g) tau).
 double diffuseTransmittance(const weather::Weather& weather, const field::CloudField& clouds) {
   double through = 1.0;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
@@ -43,7 +44,8 @@ AmbientLight ambientLight(const SkyState& s) {
   const float pi = static_cast<float>(kPi);
   const glm::vec3 skyOnGround = atmosphere.skyIlluminance(atmosphere.groundAltitudeM(), s.lights);
   a.skyLow = skyOnGround / pi;
-  a.skyHigh = atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
+  a.skyHigh =
+      atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
   const float through = static_cast<float>(diffuseTransmittance(s.weather, *s.clouds));
   glm::vec3 direct(0.0f);
   for (const sky::Light& light : s.lights) direct += horizontalIlluminance(atmosphere, light);
@@ -54,7 +56,7 @@ AmbientLight ambientLight(const SkyState& s) {
   a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
   const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;
   const bool beneath = s.scene.camera.eyeM < lowestBase;
-  a.hazeLight = beneath ? through : 1.0f;
+  a.hazeLight = beneath ? 0.35f + 0.65f * through : 1.0f;
   return a;
 }
 
@@ -65,9 +67,12 @@ double headingOf(const SkyState& s) {
   return std::fmod(degrees(std::atan2(d.x, d.y)) + 60.0 + 360.0, 360.0);
 }
 
-std::uint64_t layerSeed(const Scene& scene, std::size_t layer) { return hashOf(static_cast<std::uint64_t>(scene.seed), 77, layer); }
+std::uint64_t layerSeed(const Scene& scene, std::size_t layer) {
+  return hashOf(static_cast<std::uint64_t>(scene.seed), 77, layer);
+}
 
-std::vector<field::CloudLayer> shapesAt(const Scene& scene, const weather::Weather& weather, double secondsAfter) {
+std::vector<field::CloudLayer> shapesAt(const Scene& scene, const weather::Weather& weather,
+                                        double secondsAfter) {
   std::vector<field::CloudLayer> shapes;
   for (std::size_t i = 0; i < weather.layers.size(); ++i)
     shapes.push_back(shapeOf(weather.layers[i], layerSeed(scene, i), secondsAfter));
@@ -83,35 +88,39 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.time = addSeconds(scene.time, secondsAfter);
   s.weather = previous ? previous->weather : weatherOf(scene);
 
-  // Clouds: their cover is calibrated where and when the weather is as described, so that thresholds are the same at any instant.
+  // Clouds: their cover is calibrated where and when the weather is as described, so that thresholds are the
+  // same at any instant.
   std::vector<field::CloudLayer> shapes = shapesAt(scene, s.weather, secondsAfter);
   if (previous) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       shapes[i].threshold = previous->clouds->layers()[i].threshold;
       shapes[i].extinction = previous->clouds->layers()[i].extinction;
     }
-    s.clouds = std::make_shared<field::CloudField>(previous->clouds->sharedNoise(), shapes, scene.place.altitudeM);
+    s.clouds =
+        std::make_shared<field::CloudField>(previous->clouds->sharedNoise(), shapes, scene.place.altitudeM);
     s.cover = previous->cover;
     s.skyCover = previous->skyCover;
   } else {
     const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
     const field::CloudField start(noise, shapesAt(scene, s.weather, 0.0), scene.place.altitudeM);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const field::CloudLayer c =
-          field::calibrated(start, static_cast<int>(i), s.weather.layers[i].oktas / kOktas, field::CoverView{});
+      const field::CloudLayer c = field::calibrated(start, static_cast<int>(i),
+                                                    s.weather.layers[i].oktas / kOktas, field::CoverView{});
       shapes[i].threshold = c.threshold;
       shapes[i].extinction = c.extinction;
     }
     s.clouds = std::make_shared<field::CloudField>(noise, shapes, scene.place.altitudeM);
     const field::CoverView view{.directions = kReportDirections};
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      s.cover.push_back({s.weather.layers[i].oktas, kOktas * field::measureCover(*s.clouds, view, static_cast<int>(i))});
+      s.cover.push_back(
+          {s.weather.layers[i].oktas, kOktas * field::measureCover(*s.clouds, view, static_cast<int>(i))});
     s.skyCover = {s.weather.requestedOktas, kOktas * field::measureCover(*s.clouds, view)};
   }
 
-  s.atmosphere = previous ? previous->atmosphere
-                          : std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM, scene.place.altitudeM,
-                                                              glm::vec3(scene.ground.albedo));
+  s.atmosphere =
+      previous ? previous->atmosphere
+               : std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
+                                                   scene.place.altitudeM, glm::vec3(scene.ground.albedo));
   s.ephemeris = sky::ephemeris(
       s.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
   const sky::Light sun = sky::sunLight(s.ephemeris), moon = sky::moonLight(s.ephemeris);

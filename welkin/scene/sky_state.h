@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sky of a scene at one instant, ready to be drawn by any renderer: weather made into fields, cover calibrated, lights placed,
-// atmosphere computed. A pure function of (scene, instant).
+// The sky of a scene at one instant, ready to be drawn by any renderer: weather made into fields, cover
+// calibrated, lights placed, atmosphere computed. A pure function of (scene, instant).
 #pragma once
 
 #include <memory>
@@ -19,38 +19,40 @@ namespace welkin::scene {
 
 struct LayerCover {
   double requestedOktas = 0.0;
-  double deliveredOktas = 0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
+  double deliveredOktas =
+      0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
 };
 
 // Light that reaches clouds and ground from all directions at once. Linear Rec. 709.
 struct AmbientLight {
-  glm::vec3 skyLow{0};        // mean luminance of the upper hemisphere of the clear sky at the ground, cd/m2
-  glm::vec3 skyHigh{0};       // the same at 10 km
-  glm::vec3 skyOnGround{0};   // illuminance of the ground by sky and clouds, lux
-  glm::vec3 ground{0};        // mean luminance of the ground, cd/m2
-  float hazeLight = 1.0f;     // share of the clear air's light that is left beneath the clouds
+  glm::vec3 skyLow{0};       // mean luminance of the upper hemisphere of the clear sky at the ground, cd/m2
+  glm::vec3 skyHigh{0};      // the same at 10 km
+  glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
+  glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
+  float hazeLight = 1.0f;    // share of the clear air's light that is left beneath the clouds
 };
 
 struct SkyState {
   Scene scene;
-  UtcTime time;                                  // scene.time + secondsAfter
+  UtcTime time;  // scene.time + secondsAfter
   double secondsAfter = 0.0;
   weather::Weather weather;
   sky::Ephemeris ephemeris;
-  std::vector<sky::Light> lights;                // sun and moon; lights[0] is the one that lights the clouds
+  std::vector<sky::Light> lights;  // sun and moon; lights[0] is the one that lights the clouds
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::shared_ptr<const field::CloudField> clouds;
   AmbientLight ambient;
-  std::vector<LayerCover> cover;                 // a layer each, in the order of weather.layers
-  LayerCover skyCover;                           // the whole sky
-  double headingDeg = 0.0;                       // the camera's, with "absent" resolved
+  std::vector<LayerCover> cover;  // a layer each, in the order of weather.layers
+  LayerCover skyCover;            // the whole sky
+  double headingDeg = 0.0;        // the camera's, with "absent" resolved
 };
 
-// The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that cannot be read.
+// The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that
+// cannot be read.
 weather::Weather weatherOf(const Scene& scene);
 
-// Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, cover) is taken from `previous` when
-// given, which must come from the same scene; the result is the same either way.
+// Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, cover) is taken
+// from `previous` when given, which must come from the same scene; the result is the same either way.
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
 
 }  // namespace welkin::scene

@@ -6,6 +6,7 @@
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
+#include "welkin/optics/phase.h"
 #include "welkin/scene/cloud_shapes.h"
 
 namespace welkin::shading {
@@ -20,7 +21,6 @@ std::string layerMember(std::size_t i, const char* member) {
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  u.emplace_back("uLayerCount", static_cast<int>(layers.size()));
   u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   std::vector<float> ice(field::kMaxLayers, 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -55,7 +55,11 @@ Uniforms skyUniforms(const scene::SkyState& state) {
     diameter += 2.0 * layer.effectiveRadiusUm * layer.oktas;
     weight += layer.oktas;
   }
-  u.emplace_back("uDropletDiameterUm", static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
+  const optics::DropletPhase droplets = optics::dropletPhase(static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
+  u.emplace_back("uDroplets.gHg", droplets.gHg);
+  u.emplace_back("uDroplets.gDraine", droplets.gDraine);
+  u.emplace_back("uDroplets.alpha", droplets.alpha);
+  u.emplace_back("uDroplets.wDraine", droplets.wDraine);
 
   // Discs: illuminance spread over the disc's solid angle. The moon's is its full phase's, dimmed by the lit
   // share as drawn.
@@ -77,13 +81,13 @@ Uniforms skyUniforms(const scene::SkyState& state) {
 MarchSettings marchSettings(scene::Quality quality) {
   switch (quality) {
     case scene::Quality::kLow:
-      return {.subframes = 4, .stepNearM = 45.0f, .stepShare = 0.012f, .maxSteps = 160, .sunSamples = 3};
+      return {.subframes = 3, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
     case scene::Quality::kMedium:
-      return {.subframes = 8, .stepNearM = 35.0f, .stepShare = 0.009f, .maxSteps = 240, .sunSamples = 4};
+      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
     case scene::Quality::kHigh:
-      return {.subframes = 24, .stepNearM = 25.0f, .stepShare = 0.006f, .maxSteps = 400, .sunSamples = 6};
+      return {.subframes = 16, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
     case scene::Quality::kUltra:
-      return {.subframes = 64, .stepNearM = 16.0f, .stepShare = 0.004f, .maxSteps = 800, .sunSamples = 8};
+      return {.subframes = 64, .stepNearM = 20.0f, .stepShare = 0.005f, .maxSteps = 800, .sunSamples = 5};
   }
   return {};
 }
@@ -91,9 +95,10 @@ MarchSettings marchSettings(scene::Quality quality) {
 Uniforms marchUniforms(const MarchSettings& settings) {
   return {{"uStepNearM", settings.stepNearM},
           {"uStepShare", settings.stepShare},
+          {"uStepLong", settings.stepLong},
           {"uMaxSteps", settings.maxSteps},
           {"uSunSamples", settings.sunSamples},
-          {"uSunReachM", 900.0f}};
+          {"uSunReachM", 450.0f}};
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {

@@ -30,8 +30,9 @@ Uniforms skyUniforms(const scene::SkyState& state);
 // How finely to march.
 struct MarchSettings {
   int subframes = 8;         // accumulated into a still
-  float stepNearM = 30.0f;   // smallest step
-  float stepShare = 0.008f;  // step as a share of the distance
+  float stepNearM = 30.0f;   // smallest step, in cloud
+  float stepShare = 0.008f;  // step in cloud as a share of the distance
+  float stepLong = 8.0f;     // the longest step through clear air, in steps in cloud
   int maxSteps = 300;
   int sunSamples = 4;  // density samples towards the sun before the light volume takes over
 };
