@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Links the whole installed library, from the scene file to the renderer, and draws where there are graphics to draw with.
+// Links the whole installed library, from the scene file to the renderer, and draws where there are graphics
+// to draw with.
 #include <cstdio>
 
 #include "welkin/core/error.h"
@@ -8,7 +9,8 @@
 #include "welkin/scene/sky_state.h"
 
 int main() {
-  welkin::scene::Scene scene = welkin::scene::parseScene("[[layer]]\ngenus = \"cumulus\"\n", "consumer").scene;
+  welkin::scene::Scene scene =
+      welkin::scene::parseScene("[[layer]]\ngenus = \"cumulus\"\n", "consumer").scene;
   scene.output.width = 32;
   scene.output.height = 18;
   scene.output.quality = welkin::scene::Quality::kLow;
