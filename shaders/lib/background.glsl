@@ -6,7 +6,8 @@ uniform sampler3D uAerialInscatter;
 uniform sampler3D uAerialTransmittance;
 uniform vec3 uGroundAlbedo;
 uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
-uniform float uHazeLight;         // share of the clear air's light that is left under the clouds
+uniform float uClearAir;          // share of the lower air that the sun reaches
+uniform vec3 uHazeLuminance;      // mean luminance about the eye where it does not: what hazy air there tends to
 uniform float uDiscs;             // 1: draw the discs
 uniform vec3 uSunDirection;
 uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, cd/m2
@@ -26,7 +27,8 @@ float groundDistance(vec3 dir) {
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   atmosphereAerial(uAtmosphere, uAerialInscatter, uAerialTransmittance, uEyeM + uGroundAltitudeM, dir, uKeyDirection,
                    distanceM, inscatter, through);
-  inscatter *= uHazeLight;
+  // Air in the shade of clouds is lit from all sides alike.
+  inscatter = mix((1.0 - through) * uHazeLuminance, inscatter, uClearAir);
 }
 
 // A disc as pixels see it: at least a pixel and a half across and with an edge a pixel wide, as bright as keeps its light. So the

@@ -4,27 +4,9 @@
 #include "lib/cloud_layer.glsl"
 #include "lib/clouds.glsl"
 
-// WELKIN_LAYERS, the number of layers, is defined by shader assembly. The layers are gone through by calls with constant indices, since
-// some compilers (Mesa's software rasteriser above all) fetch a member of a dynamically indexed uniform for each pixel apart.
-#if WELKIN_LAYERS == 0
-#define WELKIN_EACH_LAYER(CALL)
-#elif WELKIN_LAYERS == 1
-#define WELKIN_EACH_LAYER(CALL) CALL(0)
-#elif WELKIN_LAYERS == 2
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1)
-#elif WELKIN_LAYERS == 3
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2)
-#elif WELKIN_LAYERS == 4
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2) CALL(3)
-#elif WELKIN_LAYERS == 5
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2) CALL(3) CALL(4)
-#elif WELKIN_LAYERS == 6
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2) CALL(3) CALL(4) CALL(5)
-#elif WELKIN_LAYERS == 7
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2) CALL(3) CALL(4) CALL(5) CALL(6)
-#else
-#define WELKIN_EACH_LAYER(CALL) CALL(0) CALL(1) CALL(2) CALL(3) CALL(4) CALL(5) CALL(6) CALL(7)
-#endif
+// Layers that overlap in height make a band. Which layers there are and in which band is compiled in, by WELKIN_EACH_LAYER(CALL): CALL(layer,
+// band) for each. Indices are constants then, and a march through one band costs nothing for the others; compilers that run all
+// branches of a program for all its pixels (Mesa's software rasteriser above all) would pay for every layer at every step.
 
 uniform CloudLayer uLayers[8];
 uniform float uLayerIce[8];       // 1: ice crystals, 0: droplets
@@ -53,9 +35,9 @@ void addLayer(CloudLayer layer, float ice, vec3 q, float detail, inout CloudPoin
   point.inside = true;
 }
 
-CloudPoint cloudsAt(vec3 q, float detail) {
+CloudPoint cloudsInBand(int band, vec3 q, float detail) {
   CloudPoint point = CloudPoint(0.0, 0.0, 1e9, 1e9, false);
-#define WELKIN_ADD_LAYER(i) addLayer(uLayers[i], uLayerIce[i], q, detail, point);
+#define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], q, detail, point);
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
   return point;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The march: from the eye through the shells of all layers at once, over the curved earth.
+// The march: from the eye through the shells of all layers in one go, band by band in the order in which the ray meets them, over
+// the curved earth. The order is compiled in: WELKIN_EACH_BAND_DOWN(CALL) for rays that come down from above (empty for an eye
+// beneath all cloud), then WELKIN_EACH_BAND_UP(CALL).
 
 uniform float uEyeM;              // height of the eye above the ground
 uniform vec3 uKeyDirection;       // towards the light that lights the clouds, sun or moon
@@ -25,27 +27,27 @@ struct CloudRay {
   float depthM;         // mean distance of what is seen
 };
 
-// The nearest crossing of the sphere at height h beyond t, if nearer than `next`.
-void boundaryAt(float h, float b, float t, inout float next) {
-  // r0^2 - r^2 without cancellation, and the stable form of both roots.
-  float c = (uEyeM - h) * (2.0 * uEarthRadiusM + uEyeM + h);
+// Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.
+vec2 sphereCrossings(float h, float dirZ) {
+  float b = (uEarthRadiusM + uEyeM) * dirZ;
+  float c = (uEyeM - h) * (2.0 * uEarthRadiusM + uEyeM + h);  // r0^2 - r^2
   float disc = b * b - c;
-  if (disc <= 0.0) return;
+  if (disc <= 0.0) return vec2(1.0, -1.0);
   float root = sqrt(disc);
   float q = b > 0.0 ? -b - root : -b + root;
   float other = abs(q) > 1e-6 ? c / q : 0.0;
-  float t0 = min(q, other), t1 = max(q, other);
-  if (t0 > t) next = min(next, t0);
-  if (t1 > t) next = min(next, t1);
+  return vec2(min(q, other), max(q, other));
 }
 
-// Distance to the next crossing of any layer's base or top beyond t; -1: none.
-float nextBoundary(vec3 dir, float t) {
-  float b = (uEarthRadiusM + uEyeM) * dir.z;
-  float next = 1e9;
-#define WELKIN_LAYER_BOUNDARIES(i) boundaryAt(uLayers[i].baseM, b, t, next); boundaryAt(uLayers[i].topM, b, t, next);
-  WELKIN_EACH_LAYER(WELKIN_LAYER_BOUNDARIES)
-  return next > 1e8 ? -1.0 : next;
+// The stretch of a ray inside a band on its way up (behind the lowest point) or down; x >= y: none. A ray whose lowest point is in the
+// band has one stretch, which counts as down.
+vec2 bandStretch(vec2 band, bool up, float dirZ) {
+  vec2 outer = sphereCrossings(band.y, dirZ);
+  vec2 inner = sphereCrossings(band.x, dirZ);
+  bool outerHit = outer.x <= outer.y, innerHit = inner.x <= inner.y;
+  if (!outerHit || outer.y <= 0.0) return vec2(0.0);
+  if (up) return innerHit ? vec2(max(inner.y, 0.0), outer.y) : vec2(0.0);
+  return vec2(max(outer.x, 0.0), innerHit ? inner.x : outer.y);
 }
 
 vec3 keyLightAt(float heightM, vec3 p) {
@@ -55,7 +57,7 @@ vec3 keyLightAt(float heightM, vec3 p) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float detail, float dither) {
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float detail, float dither) {
   float near = 0.0;
   float done = 0.0;
   // Distances grow cubically: fine where shadows are sharp. Thin cloud has none that the light volume would miss.
@@ -65,7 +67,7 @@ vec3 cloudSource(vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, fl
     float end = uSunReachM * x * x * x;
     float at = mix(done, end, fract(dither + 0.382 * float(i)));
     vec3 s = cloudPosition(p + uKeyDirection * at, uEarthRadiusM);
-    near += (end - done) * cloudsAt(s, i < 2 ? detail : 0.0).extinction;
+    near += (end - done) * cloudsInBand(band, s, i < 2 ? detail : 0.0).extinction;
     done = end;
     if (near > 15.0) break;
   }
@@ -78,43 +80,39 @@ vec3 cloudSource(vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, fl
   return source + mix(uSkyLow, uSkyHigh, clamp(q.z / 10000.0, 0.0, 1.0)) * shares.x + uGroundLight * shares.y;
 }
 
-CloudRay marchClouds(vec3 dir, float endM, float pixelRad, float dither) {
-  CloudRay ray = CloudRay(vec3(0.0), 1.0, 0.0);
-  float weightedDepth = 0.0, weight = 0.0;
-  float cosSun = dot(dir, uKeyDirection);
-  vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
-                     mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
-  // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn
-  // together then light together, however far apart their clouds are.
-  float t = 0.0;
-  float lastClear = 0.0;  // a place in front of the surface
-  float entered = -1.0;   // where a long step last ended in a cloud
-  int steps = 0;
-  while (steps < uMaxSteps && t < endM) {
+// What a march carries along a ray.
+struct MarchState {
+  vec3 luminance;
+  float transmittance;
+  float weightedDepth;
+  float weight;
+  int steps;
+};
+
+// Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
+// then light together, however far apart their clouds are.
+void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, float dither,
+               inout MarchState state) {
+  float t = stretch.x;
+  t += max(uStepNearM, uStepShare * t) * (0.02 + dither);
+  float lastClear = stretch.x;  // a place in front of the surface
+  float entered = -1.0;         // where a long step last ended in a cloud
+  while (state.steps < uMaxSteps && t < stretch.y && state.transmittance > 0.0) {
     vec3 p, q;
     CloudPoint point;
     float shortStep, detail;
     bool hit = false;
-    while (steps < uMaxSteps && t < endM) {
-      ++steps;
+    while (state.steps < uMaxSteps && t < stretch.y) {
+      ++state.steps;
       p = vec3(0.0, 0.0, uEyeM) + dir * t;
       q = cloudPosition(p, uEarthRadiusM);
       detail = clamp(2.0 - 12.0 * t * pixelRad / 40.0, 0.0, 1.0);
-      point = cloudsAt(q, detail);
+      point = cloudsInBand(band, q, detail);
       shortStep = max(uStepNearM, uStepShare * t);
       if (point.inside) shortStep = max(shortStep, point.stepM);
-      float longStep = uStepLong * shortStep;
-      if (!point.inside) {
-        float next = nextBoundary(dir, t);
-        if (next < 0.0) {
-          t = endM;
-          break;
-        }
-        lastClear = next;
-        t = next + shortStep * (0.02 + dither);
-      } else if (point.extinction <= 0.0) {
+      if (point.extinction <= 0.0) {
         lastClear = t;
-        t += clamp(2.2 * point.clearM, shortStep, longStep);
+        t += clamp(2.2 * point.clearM, shortStep, uStepLong * shortStep);
       } else if (t - lastClear > 1.6 * shortStep && lastClear >= entered) {
         // A long step ended in a cloud: back to find its surface with short ones.
         entered = t;
@@ -126,20 +124,35 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, float dither) {
     }
     if (!hit) break;
     float through = exp(-point.extinction * shortStep);
-    float share = ray.transmittance * (1.0 - through);
-    vec3 source = cloudSource(p, q, point, phases, cosSun, detail, dither);
-    ray.luminance += share * source;
-    weightedDepth += share * t;
-    weight += share;
-    ray.transmittance *= through;
-    if (ray.transmittance < 0.01) {
+    float share = state.transmittance * (1.0 - through);
+    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, detail, dither);
+    state.weightedDepth += share * t;
+    state.weight += share;
+    state.transmittance *= through;
+    if (state.transmittance < 0.01) {
       // What is left would look like what was seen.
-      ray.luminance /= 1.0 - ray.transmittance;
-      ray.transmittance = 0.0;
-      break;
+      state.luminance /= 1.0 - state.transmittance;
+      state.transmittance = 0.0;
     }
     t += shortStep;
   }
-  if (weight > 0.0) ray.depthM = weightedDepth / weight;
-  return ray;
+}
+
+CloudRay marchClouds(vec3 dir, float endM, float pixelRad, float dither) {
+  float cosSun = dot(dir, uKeyDirection);
+  vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
+                     mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
+  MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0);
+  vec2 stretch;
+#define WELKIN_MARCH_DOWN(i)                                \
+  stretch = bandStretch(vec2(uBands[i]), false, dir.z);     \
+  stretch.y = min(stretch.y, endM);                         \
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
+#define WELKIN_MARCH_UP(i)                                  \
+  stretch = bandStretch(vec2(uBands[i]), true, dir.z);      \
+  stretch.y = min(stretch.y, endM);                         \
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
+  WELKIN_EACH_BAND_DOWN(WELKIN_MARCH_DOWN)
+  WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
+  return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0);
 }

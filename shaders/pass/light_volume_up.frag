@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One slice of the light volume from the slice above it: optical depth up the line and straight up.
 
+// Compiled for each band (WELKIN_BAND), with that band's layers alone. The topmost slice of a band takes over what lies above the gap.
+
 #include "lib/cloud_uniforms.glsl"
 
 uniform sampler2D uAbove;         // the slice above; zero above the highest
@@ -21,11 +23,11 @@ void main() {
   float line = 0.0;
   for (int i = 0; i < uSamples; ++i) {
     float t = (float(i) + 0.5) / float(uSamples) * lengthM;
-    line += cloudsAt(vec3(q, uHeightM) + uLine * t, 0.0).extinction;
+    line += cloudsInBand(WELKIN_BAND, vec3(q, uHeightM) + uLine * t, 0.0).extinction;
   }
   line *= lengthM / float(uSamples);
-  float up = 0.5 * rise * (cloudsAt(vec3(q, uHeightM + 0.25 * rise), 0.0).extinction +
-                           cloudsAt(vec3(q, uHeightM + 0.75 * rise), 0.0).extinction);
+  float up = 0.5 * rise * (cloudsInBand(WELKIN_BAND, vec3(q, uHeightM + 0.25 * rise), 0.0).extinction +
+                           cloudsInBand(WELKIN_BAND, vec3(q, uHeightM + 0.75 * rise), 0.0).extinction);
   vec2 shifted = uv + vec2(uLine) * lengthM / uHalfM * 0.5;
   vec2 above = vec2(textureLod(uAbove, shifted, 0.0).x, textureLod(uAbove, uv, 0.0).y);
   outNext = vec4(above + vec2(line, up), 0.0, 0.0);

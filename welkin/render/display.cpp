@@ -54,7 +54,8 @@ double automaticExposureEv(const Image<float>& luminance) {
   const double mean = std::exp(logSum / static_cast<double>(values.size() - first));
   // How bright the mean is to look: G. Krawczyk, K. Myszkowski and H.-P. Seidel 2005, "Perceptual Effects in Real-time Tone
   // Mapping", eq. 11; dim scenes stay dim.
-  const double key = 1.03 - 2.0 / (2.0 + std::log10(mean + 1.0));
+  // Below the full moon's light no darker than is still to be read on a screen.
+  const double key = std::max(1.03 - 2.0 / (2.0 + std::log10(mean + 1.0)), 0.15);
   const double evMean = evOfWhite(mean / (0.56 * key));
   // Bright clouds must keep their modelling: the brightest twentieth may not pass twice white.
   const double evBright = evOfWhite(values[values.size() * 95 / 100] / (2.4 * key + 0.1));

@@ -30,14 +30,17 @@ void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVol
     volume_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
   }
   if (layout.heightsM.empty()) return;  // a clear sky: nothing asks for the volume
-  gpu::Program& up = up_.forLayers(state.clouds->layers().size());
-  setUniforms(up, shading::cloudUniforms(state));
-  up.set("uLine", layout.line);
+  const shading::Uniforms uniforms = shading::cloudUniforms(state);
+  for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) {
+    gpu::Program& up = up_.with(shading::bandDefines(layout, b));
+    setUniforms(up, uniforms);
+    up.set("uLine", layout.line);
+  }
   down_.set("uLine", layout.line);
-  for (int c = 0; c < cascades; ++c) sweepCascade(up, layout, c, clouds);
+  for (int c = 0; c < cascades; ++c) sweepCascade(layout, c, clouds);
 }
 
-void LightVolumePass::sweepCascade(gpu::Program& up, const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds) {
+void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds) {
   const int slices = static_cast<int>(layout.heightsM.size());
   const float halfM = layout.kHalfM[static_cast<std::size_t>(cascade)];
   const float voxelM = 2.0f * halfM / kSide;
@@ -49,9 +52,12 @@ void LightVolumePass::sweepCascade(gpu::Program& up, const shading::LightVolumeL
     gpu::Framebuffer(neighbour_[0]).clear();
   };
 
-  up.set("uHalfM", halfM);
   clearNeighbour();
+  int band = static_cast<int>(layout.bands.size()) - 1;
   for (int k = slices - 1; k >= 0; --k) {
+    while (k < layout.bands[static_cast<std::size_t>(band)].firstSlice) --band;
+    gpu::Program& up = up_.with(shading::bandDefines(layout, band));
+    up.set("uHalfM", halfM);
     const float height = layout.heightsM[static_cast<std::size_t>(k)];
     const float above = k + 1 < slices ? layout.heightsM[static_cast<std::size_t>(k + 1)] : height;
     const float shiftM = (above - height) / layout.line.z;

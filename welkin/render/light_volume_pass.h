@@ -23,10 +23,10 @@ class LightVolumePass {
   const gpu::Texture3D& volume() const { return volume_; }
 
  private:
-  void sweepCascade(gpu::Program& up, const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds);
+  void sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds);
 
   gpu::FullscreenTriangle triangle_;
-  LayeredProgram up_{"pass/light_volume_up.frag"};
+  ProgramVariants up_{"pass/light_volume_up.frag"};
   gpu::Program down_;
   gpu::Texture2D neighbour_[2];   // the last slice swept, and the next
   gpu::Texture3D upward_;         // what the first sweep found

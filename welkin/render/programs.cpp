@@ -10,12 +10,9 @@ gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shadin
                                 shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
 }
 
-gpu::Program& LayeredProgram::forLayers(std::size_t count) {
-  gpu::Program& program = programs_[count];
-  if (program.id() == 0) {
-    const shading::ShaderDefine layers[] = {{"WELKIN_LAYERS", std::to_string(count)}};
-    program = fullscreenProgram(fragment_, layers);
-  }
+gpu::Program& ProgramVariants::with(const shading::ShaderDefines& defines) {
+  gpu::Program& program = programs_[defines];
+  if (program.id() == 0) program = fullscreenProgram(fragment_, defines);
   return program;
 }
 

@@ -29,7 +29,7 @@ float quasiRandom1(int i) { return static_cast<float>(std::fmod(0.5 + 0.61803398
 struct SkyRenderer::Impl {
   gpu::Context context;
   gpu::FullscreenTriangle triangle;
-  LayeredProgram sky{"pass/sky.frag"};
+  ProgramVariants sky{"pass/sky.frag"};
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
 };
@@ -57,7 +57,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   done("light volume");
 
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  gpu::Program& p = impl_->sky.forLayers(state.clouds->layers().size());
+  gpu::Program& p = impl_->sky.with(shading::marchDefines(layout, state.scene.camera.eyeM));
   done("compile");
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));

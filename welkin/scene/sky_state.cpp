@@ -54,9 +54,11 @@ AmbientLight ambientLight(const SkyState& s) {
   const float diffused = std::max(through - (1.0f - cover), 0.0f);
   a.skyOnGround = skyOnGround * through + direct * diffused;
   a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
+  // From above the clouds most of the air in view is sunlit.
   const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;
-  const bool beneath = s.scene.camera.eyeM < lowestBase;
-  a.hazeLight = beneath ? 0.35f + 0.65f * through : 1.0f;
+  const bool beneath = !s.weather.layers.empty() && s.scene.camera.eyeM < lowestBase + 200.0;
+  a.clearAir = beneath ? 1.0f - cover : 1.0f;
+  a.haze = 0.5f * (a.skyOnGround / pi + a.ground);
   return a;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
@@ -46,7 +47,8 @@ Uniforms skyUniforms(const scene::SkyState& state) {
   u.emplace_back("uSkyHigh", state.ambient.skyHigh);
   u.emplace_back("uSkyOnGround", state.ambient.skyOnGround);
   u.emplace_back("uGroundLight", state.ambient.ground);
-  u.emplace_back("uHazeLight", state.ambient.hazeLight);
+  u.emplace_back("uClearAir", state.ambient.clearAir);
+  u.emplace_back("uHazeLuminance", state.ambient.haze);
   u.emplace_back("uGroundAlbedo", glm::vec3(s.ground.albedo));
 
   double diameter = 0.0, weight = 1e-9;
@@ -119,17 +121,19 @@ Uniforms projectorUniforms(const scene::SkyState& state) {
 }
 
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
-  constexpr float kSpacingM = 60.0f;
-  constexpr int kFewest = 6, kMost = 28;
+  constexpr float kSpacingM = 70.0f;
+  constexpr int kFewest = 5, kMost = 24;
   LightVolumeLayout layout;
-  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
-  std::sort(layers.begin(), layers.end(),
-            [](const field::CloudLayer& a, const field::CloudLayer& b) { return a.baseM < b.baseM; });
-  for (const field::CloudLayer& layer : layers) {
-    if (!layout.bands.empty() && layer.baseM <= layout.bands.back().topM)
-      layout.bands.back().topM = std::max(layout.bands.back().topM, layer.topM);
-    else
-      layout.bands.push_back({layer.baseM, layer.topM, 0, 0});
+  const auto layers = state.clouds->layers();
+  std::vector<int> order(layers.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::pair(layers[a].baseM, a) < std::pair(layers[b].baseM, b); });
+  for (const int i : order) {
+    const field::CloudLayer& layer = layers[static_cast<std::size_t>(i)];
+    if (layout.bands.empty() || layer.baseM > layout.bands.back().topM)
+      layout.bands.push_back({layer.baseM, layer.topM, 0, 0, {}});
+    layout.bands.back().topM = std::max(layout.bands.back().topM, layer.topM);
+    layout.bands.back().layers.push_back(i);
   }
   for (auto& band : layout.bands) {
     const int n = std::clamp(static_cast<int>((band.topM - band.baseM) / kSpacingM), kFewest, kMost);
@@ -162,6 +166,33 @@ Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {
   u.emplace_back("uBands", bands);
   u.emplace_back("uCascadeHalfM", std::vector<float>(layout.kHalfM.begin(), layout.kHalfM.end()));
   return u;
+}
+
+namespace {
+
+// "CALL(0, 0) CALL(1, 0)": layer and band of each layer in the band.
+std::string layerCalls(const LightVolumeLayout& layout, int band) {
+  std::string calls;
+  for (const int layer : layout.bands[static_cast<std::size_t>(band)].layers)
+    calls += "CALL(" + std::to_string(layer) + ", " + std::to_string(band) + ") ";
+  return calls;
+}
+
+}  // namespace
+
+ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
+  std::string layers, down, up;
+  for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) {
+    const std::string call = "CALL(" + std::to_string(b) + ") ";
+    layers += layerCalls(layout, b);
+    up += call;
+    if (eyeM > layout.bands[static_cast<std::size_t>(b)].baseM) down = call + down;
+  }
+  return {{"WELKIN_EACH_LAYER(CALL)", layers}, {"WELKIN_EACH_BAND_DOWN(CALL)", down}, {"WELKIN_EACH_BAND_UP(CALL)", up}};
+}
+
+ShaderDefines bandDefines(const LightVolumeLayout& layout, int band) {
+  return {{"WELKIN_BAND", std::to_string(band)}, {"WELKIN_EACH_LAYER(CALL)", layerCalls(layout, band)}};
 }
 
 }  // namespace welkin::shading

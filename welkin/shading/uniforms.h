@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "welkin/scene/sky_state.h"
+#include "welkin/shading/shader_library.h"
 
 namespace welkin::shading {
 
@@ -47,6 +48,7 @@ struct LightVolumeLayout {
   struct Band {
     float baseM, topM;
     int firstSlice, lastSlice;
+    std::vector<int> layers;  // that lie in it, by their indices in the field
   };
   static constexpr int kColumns = 160;  // a side, of each cascade
   static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
@@ -58,5 +60,11 @@ struct LightVolumeLayout {
 };
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
+
+// What is compiled into programs (lib/cloud_uniforms.glsl): the layers of all bands, and the order in which a march from an eye at
+// a height meets them; or one band alone.
+using ShaderDefines = std::vector<ShaderDefine>;
+ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
+ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
 
 }  // namespace welkin::shading
