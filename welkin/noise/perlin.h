@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 
 namespace welkin::noise {
 
@@ -16,12 +17,17 @@ class Perlin {
   // A permutation shuffled by a portable generator.
   explicit Perlin(std::uint64_t seed);
 
-  // Noise at p, in lattice cells. Standard deviation 0.27, range about [-0.95, 0.95], 0 on lattice points, repeats every 256.
+  // Noise at p, in lattice cells. Standard deviation 0.27, range about [-0.95, 0.95], 0 on lattice points,
+  // repeats every 256.
   double operator()(double x, double y, double z) const;
 
-  // The same with the lattice wrapped to `period` cells an axis (each >= 1): n(p + period) == n(p). Seamless for any period, since
-  // both corners of a cell are wrapped.
+  // The same with the lattice wrapped to `period` cells an axis (each >= 1): n(p + period) == n(p). Seamless
+  // for any period, since both corners of a cell are wrapped.
   float periodic(float x, float y, float z, glm::ivec3 period) const;
+
+  // out[i] += weight * periodic((i + 0.5) * step, y, z, period) for a whole row, several times faster; equal
+  // but for rounding. step > 0.
+  void addRow(std::span<float> out, float weight, float step, float y, float z, glm::ivec3 period) const;
 
  private:
   std::array<std::uint8_t, 512> p_;

@@ -12,16 +12,17 @@ namespace welkin::noise {
 // A fractal sum: octave o has frequency * lacunarity^o cells across the tile and weight persistence^o.
 struct Fractal {
   int octaves = 4;
-  int frequency = 4;       // cells across the tile in the first octave, >= 1
-  int lacunarity = 2;      // integer, so that every octave tiles
+  int frequency = 4;   // cells across the tile in the first octave, >= 1
+  int lacunarity = 2;  // integer, so that every octave tiles
   float persistence = 0.5f;
 };
 
-// n x n x n, one channel: mix of gradient noise (weight 1 - billow) and inverted cellular noise (weight billow), which makes round
-// bumps with sharp creases between them: the cauliflower of cumulus.
+// n x n x n, one channel: mix of gradient noise (weight 1 - billow) and inverted cellular noise (weight
+// billow), which makes round bumps with sharp creases between them: the cauliflower of cumulus.
 Volume<float> billowVolume(std::uint64_t seed, int n, const Fractal& fractal, float billow);
 
-// n x n, one channel: gradient-noise fractal sum made exactly Gaussian by rank, so that a threshold is a cover.
+// n x n, one channel: gradient-noise fractal sum made exactly Gaussian by rank, so that a threshold is a
+// cover.
 Image<float> gaussianMap(std::uint64_t seed, int n, const Fractal& fractal);
 
 // n x n, one channel: round cells (inverted cellular noise with a little gradient noise), Gaussian by rank.

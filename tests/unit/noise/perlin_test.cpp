@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "welkin/core/random.h"
 
@@ -48,7 +50,8 @@ TEST(Perlin, TilesWithAnyPeriod) {
   for (const glm::ivec3 period : {glm::ivec3(1, 1, 1), glm::ivec3(3, 5, 7), glm::ivec3(300, 257, 511)}) {
     for (int i = 0; i < 200; ++i) {
       // Multiples of 1/64, so that adding the period is exact.
-      const float x = static_cast<float>(random.below(64 * period.x)) / 64, y = static_cast<float>(random.below(64 * period.y)) / 64,
+      const float x = static_cast<float>(random.below(64 * period.x)) / 64,
+                  y = static_cast<float>(random.below(64 * period.y)) / 64,
                   z = static_cast<float>(random.below(64 * period.z)) / 64;
       const float here = perlin.periodic(x, y, z, period);
       EXPECT_EQ(here, perlin.periodic(x + static_cast<float>(period.x), y, z, period));
@@ -67,6 +70,24 @@ TEST(Perlin, HasNoSeamWhereItTiles) {
     const float inside = perlin.periodic(5.0f - step, y, 0.3f, {5, 5, 5});
     const float outside = perlin.periodic(0.0f + step, y, 0.3f, {5, 5, 5});
     EXPECT_NEAR(inside, outside, 0.01f);
+  }
+}
+
+TEST(Perlin, RowsAreTheSameNoise) {
+  const Perlin perlin(17);
+  for (const glm::ivec3 period :
+       {glm::ivec3(1, 2, 3), glm::ivec3(5, 5, 5), glm::ivec3(40, 40, 40), glm::ivec3(300, 300, 256)}) {
+    std::vector<float> row(128, 0.25f);
+    const float step = static_cast<float>(period.x) / 128.0f;
+    for (const float y : {0.3f, 1.9f})
+      for (const float z : {0.5f, 2.2f}) {
+        std::fill(row.begin(), row.end(), 0.25f);
+        perlin.addRow(row, 3.0f, step, y, z, period);
+        for (int i = 0; i < 128; ++i)
+          EXPECT_NEAR(row[i],
+                      0.25f + 3.0f * perlin.periodic((static_cast<float>(i) + 0.5f) * step, y, z, period),
+                      1e-5f);
+      }
   }
 }
 

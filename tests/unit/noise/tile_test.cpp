@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "welkin/core/parallel.h"
+#include "welkin/noise/perlin.h"
 
 namespace welkin::noise {
 namespace {
@@ -30,18 +33,51 @@ TEST(Tile, VolumesAreNormalised) {
   EXPECT_NEAR(deviationOf(v.data), 1.0, 1e-4);
 }
 
-// A threshold on a Gaussian map is a cover: the shares above 0, 1 and 2 deviations are those of the normal distribution.
+// A threshold on a Gaussian map is a cover: the shares above 0, 1 and 2 deviations are those of the normal
+// distribution.
 TEST(Tile, MapsAreGaussian) {
   for (const Image<float>& map : {gaussianMap(3, 128, {.octaves = 5, .frequency = 4}),
                                   gaussianCellMap(4, 128, {.octaves = 3, .frequency = 8})}) {
     const double n = static_cast<double>(map.data.size());
     auto shareAbove = [&](float t) {
-      return static_cast<double>(std::count_if(map.data.begin(), map.data.end(), [&](float x) { return x > t; })) / n;
+      return static_cast<double>(
+                 std::count_if(map.data.begin(), map.data.end(), [&](float x) { return x > t; })) /
+             n;
     };
     EXPECT_NEAR(shareAbove(0.0f), 0.5, 0.001);
     EXPECT_NEAR(shareAbove(1.0f), 0.1587, 0.001);
     EXPECT_NEAR(shareAbove(2.0f), 0.0228, 0.001);
   }
+}
+
+// Ranks make the values, so each quantile of the normal distribution is taken exactly once.
+TEST(Tile, MapsTakeEachQuantileOnce) {
+  const Image<float> map = gaussianMap(9, 64, {.octaves = 3, .frequency = 4});
+  std::vector<float> v = map.data;
+  std::sort(v.begin(), v.end());
+  EXPECT_EQ(std::adjacent_find(v.begin(), v.end()), v.end());
+  const std::size_t n = v.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    // The distribution function undoes the quantile; the approximation of the latter is good to 4.5e-4.
+    const double share = 0.5 * std::erfc(-v[i] / std::sqrt(2.0));
+    EXPECT_NEAR(share, (static_cast<double>(i) + 0.5) / static_cast<double>(n), 3e-4);
+  }
+}
+
+// Ranks keep the order of what was ranked: the unranked sum is larger wherever the map is.
+TEST(Tile, RankingKeepsTheOrder) {
+  const int n = 64;
+  const Fractal one{.octaves = 1, .frequency = 5};
+  const Image<float> map = gaussianMap(11, n, one);
+  const Perlin perlin(11);
+  std::vector<std::pair<float, float>> pairs;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      auto at = [&](int i) { return (static_cast<float>(i) + 0.5f) * 5.0f / static_cast<float>(n); };
+      pairs.emplace_back(map.at(x, y), perlin.periodic(at(x), at(y), 0.5f, {5, 5, 256}));
+    }
+  std::sort(pairs.begin(), pairs.end());
+  for (std::size_t i = 1; i < pairs.size(); ++i) EXPECT_GE(pairs[i].second, pairs[i - 1].second - 1e-5f);
 }
 
 TEST(Tile, MapsAreSeamless) {
