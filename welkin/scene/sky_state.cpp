@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "welkin/core/random.h"
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
-#include "welkin/field/cover.h"
-#include "welkin/scene/cloud_shapes.h"
 #include "welkin/sky/light.h"
 
 namespace welkin::scene {
 namespace {
 
 constexpr double kOktas = 8.0;
-constexpr int kReportDirections = 4000;  // for the delivered numbers; calibration needs fewer
 
 // Illuminance that a light sends through the air onto a horizontal plane at the ground.
 glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light) {
@@ -69,18 +66,6 @@ double headingOf(const SkyState& s) {
   return std::fmod(degrees(std::atan2(d.x, d.y)) + 60.0 + 360.0, 360.0);
 }
 
-std::uint64_t layerSeed(const Scene& scene, std::size_t layer) {
-  return hashOf(static_cast<std::uint64_t>(scene.seed), 77, layer);
-}
-
-std::vector<field::CloudLayer> shapesAt(const Scene& scene, const weather::Weather& weather,
-                                        double secondsAfter) {
-  std::vector<field::CloudLayer> shapes;
-  for (std::size_t i = 0; i < weather.layers.size(); ++i)
-    shapes.push_back(shapeOf(weather.layers[i], layerSeed(scene, i), secondsAfter));
-  return shapes;
-}
-
 }  // namespace
 
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous) {
@@ -90,33 +75,17 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.time = addSeconds(scene.time, secondsAfter);
   s.weather = previous ? previous->weather : weatherOf(scene);
 
-  // Clouds: their cover is calibrated where and when the weather is as described, so that thresholds are the
-  // same at any instant.
-  std::vector<field::CloudLayer> shapes = shapesAt(scene, s.weather, secondsAfter);
+  const auto noise = previous ? previous->clouds->sharedNoise()
+                              : field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
+  s.calibration = previous ? previous->calibration : calibrateClouds(scene, s.weather, noise);
+  s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
   if (previous) {
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      shapes[i].threshold = previous->clouds->layers()[i].threshold;
-      shapes[i].extinction = previous->clouds->layers()[i].extinction;
-    }
-    s.clouds =
-        std::make_shared<field::CloudField>(previous->clouds->sharedNoise(), shapes, scene.place.altitudeM);
     s.cover = previous->cover;
     s.skyCover = previous->skyCover;
   } else {
-    const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
-    const field::CloudField start(noise, shapesAt(scene, s.weather, 0.0), scene.place.altitudeM);
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const field::CloudLayer c = field::calibrated(start, static_cast<int>(i),
-                                                    s.weather.layers[i].oktas / kOktas, field::CoverView{});
-      shapes[i].threshold = c.threshold;
-      shapes[i].extinction = c.extinction;
-    }
-    s.clouds = std::make_shared<field::CloudField>(noise, shapes, scene.place.altitudeM);
-    const field::CoverView view{.directions = kReportDirections};
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-      s.cover.push_back(
-          {s.weather.layers[i].oktas, kOktas * field::measureCover(*s.clouds, view, static_cast<int>(i))});
-    s.skyCover = {s.weather.requestedOktas, kOktas * field::measureCover(*s.clouds, view)};
+    DeliveredCover cover = measureCover(s.weather, *s.clouds);
+    s.cover = std::move(cover.layers);
+    s.skyCover = cover.sky;
   }
 
   s.atmosphere =

@@ -6,22 +6,13 @@
 #include <memory>
 #include <vector>
 
+#include "welkin/scene/cloud_cover.h"
 #include "welkin/scene/scene.h"
 #include "welkin/sky/atmosphere.h"
 #include "welkin/sky/ephemeris.h"
 #include "welkin/weather/weather.h"
 
-namespace welkin::field {
-class CloudField;
-}
-
 namespace welkin::scene {
-
-struct LayerCover {
-  double requestedOktas = 0.0;
-  double deliveredOktas =
-      0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
-};
 
 // Light that reaches clouds and ground from all directions at once. Linear Rec. 709.
 struct AmbientLight {
@@ -42,6 +33,7 @@ struct SkyState {
   std::vector<sky::Light> lights;  // sun and moon; lights[0] is the one that lights the clouds
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::shared_ptr<const field::CloudField> clouds;
+  std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
   AmbientLight ambient;
   std::vector<LayerCover> cover;  // a layer each, in the order of weather.layers
   LayerCover skyCover;            // the whole sky
@@ -53,7 +45,9 @@ struct SkyState {
 weather::Weather weatherOf(const Scene& scene);
 
 // Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, cover) is taken
-// from `previous` when given, which must come from the same scene; the result is the same either way.
+// from `previous` when given, which must come from the same scene; the sky is the same either way. The
+// delivered cover is measured only without `previous`, as it costs more than the rest: a sequence carries
+// that of its first picture.
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
 
 }  // namespace welkin::scene

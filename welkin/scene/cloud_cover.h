@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clouds that cover as much of the sky as the weather says: the shapes of its layers, calibrated, and what
+// they deliver.
+//
+// Cover is calibrated where and when the weather is as described: on the ground at the place, at the scene's
+// time. The result is a pure function of (scene, weather), whatever the instant and the eye.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "welkin/scene/scene.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::field {
+struct CloudNoise;
+class CloudField;
+}  // namespace welkin::field
+
+namespace welkin::scene {
+
+struct LayerCover {
+  double requestedOktas = 0.0;
+  double deliveredOktas =
+      0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
+};
+
+// What calibration settles for one layer.
+struct LayerCalibration {
+  std::uint64_t seed = 0;   // of the layer's pattern
+  float threshold = 0.0f;   // CloudLayer's
+  float extinction = 0.0f;  // 1/m; more than the weather's where that would be too thin to count as cloud
+};
+
+// For each layer of the weather, so that each covers by itself what it should and all of them together what
+// they should by random overlap. `noise` is that of the scene's seed.
+std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
+                                              std::shared_ptr<const field::CloudNoise> noise);
+
+// The clouds `secondsAfter` the scene's time.
+std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weather::Weather& weather,
+                                                  const std::vector<LayerCalibration>& calibration,
+                                                  std::shared_ptr<const field::CloudNoise> noise,
+                                                  double secondsAfter);
+
+// What the clouds hide of the sky above the place.
+struct DeliveredCover {
+  std::vector<LayerCover> layers;  // each by itself, in the order of the weather's
+  LayerCover sky;                  // all together
+};
+DeliveredCover measureCover(const weather::Weather& weather, const field::CloudField& clouds);
+
+}  // namespace welkin::scene
