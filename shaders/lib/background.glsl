@@ -49,7 +49,8 @@ Disc discAt(vec3 dir, vec3 centre, float radius, float pixelRad) {
 
 // Limb darkening of the sun in the visible, D. Hestroffer and C. Magnan 1998 (exponent for 550 nm), mean 1 over the disc.
 vec3 sunDisc(vec3 dir, float pixelRad) {
-  const float exponent = 0.41;
+  // Where pixels are as large as the disc there is no limb to see, and darkening the widened edge would lose light.
+  float exponent = 0.41 * smoothstep(1.0, 6.0, uSunRadius / pixelRad);
   Disc disc = discAt(dir, uSunDirection, uSunRadius, pixelRad);
   float limb = pow(max(1.0 - disc.x * disc.x, 0.02), 0.5 * exponent) * (0.5 * exponent + 1.0);
   return uSunLuminance * (disc.share * limb);

@@ -59,7 +59,9 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
   if (h <= 0.0f || h >= 1.0f) return 0.0f;
   vec2 p = cloudPatternPosition(layer, q, h);
   float s = cloudPlacement(layer, placement, p) - layer.threshold - cloudProfile(layer, h);
+  // Noise shapes the surface but makes no cloud of its own: it fades out away from the surface outwards.
   float shapeAmount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
+  shapeAmount *= smoothstep(-2.5f * layer.shapeAmount, -0.4f * layer.shapeAmount, s);
   // The noises seldom exceed two and a half deviations.
   float bound = s + 2.5f * shapeAmount + 2.0f * layer.detailAmount * detail;
   if (bound <= 0.0f) {

@@ -91,12 +91,12 @@ struct MarchState {
 
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are.
-void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, float dither,
+void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
-  t += max(uStepNearM, uStepShare * t) * (0.02 + dither);
+  t += max(uStepNearM, uStepShare * t) * (0.02 + dither.x);
   float lastClear = stretch.x;  // a place in front of the surface
-  float entered = -1.0;         // where a long step last ended in a cloud
+  int fine = 0;                 // short steps to go before stepping far again
   while (state.steps < uMaxSteps && t < stretch.y && state.transmittance > 0.0) {
     vec3 p, q;
     CloudPoint point;
@@ -112,20 +112,23 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
       if (point.inside) shortStep = max(shortStep, point.stepM);
       if (point.extinction <= 0.0) {
         lastClear = t;
-        t += clamp(2.2 * point.clearM, shortStep, uStepLong * shortStep);
-      } else if (t - lastClear > 1.6 * shortStep && lastClear >= entered) {
-        // A long step ended in a cloud: back to find its surface with short ones.
-        entered = t;
-        t = lastClear + shortStep * (0.3 + dither);
+        t += fine > 0 ? shortStep : clamp(2.2 * point.clearM, shortStep, uStepLong * shortStep);
+        --fine;
+      } else if (fine <= 0) {
+        // Out of clear air into a cloud: back, and on with short steps from a place of chance. (Bounded steps end at the same depth
+        // under the surface whatever place they began at, and would draw lines of equal depth on it.)
+        fine = 2 + int((t - lastClear) / shortStep);
+        t = lastClear + shortStep * dither.x;
       } else {
         hit = true;
         break;
       }
     }
     if (!hit) break;
+    fine = max(fine, 2);
     float through = exp(-point.extinction * shortStep);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, detail, dither);
+    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, detail, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
@@ -138,7 +141,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
   }
 }
 
-CloudRay marchClouds(vec3 dir, float endM, float pixelRad, float dither) {
+CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
   vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
                      mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));

@@ -13,7 +13,7 @@
 
 uniform Projector uProjector;
 uniform vec2 uJitterPx;           // of this sub-frame within the pixel
-uniform float uJitterStep;        // of this sub-frame along the ray, [0, 1)
+uniform vec2 uJitterStep;         // of this sub-frame along the ray and towards the sun, [0, 1)
 uniform float uWeight;
 
 layout(location = 0) out vec4 outColor;
@@ -29,11 +29,12 @@ void main() {
     outColor = vec4(0.0, 0.0, 0.0, uWeight);
     return;
   }
-  float dither = fract(interleavedNoise(floor(px)) + uJitterStep);
+  // Two dithers that know nothing of each other, along the ray and towards the sun: related, they would draw contour lines.
+  vec2 dither = fract(vec2(interleavedNoise(floor(px)), interleavedNoise(floor(px.yx) + 71.0)) + uJitterStep);
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
   vec3 color = vec3(0.0);
-  if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad, dither);
+  if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad, dither.y);
   if (ray.transmittance < 0.9999) {
     vec3 inscatter, through;
     aerial(dir, ray.depthM, inscatter, through);

@@ -7,7 +7,10 @@ namespace welkin::render {
 namespace {
 
 gpu::TextureOptions tiling(gpu::Format format) {
-  return {.format = format, .wrapX = gpu::Wrap::kRepeat, .wrapY = gpu::Wrap::kRepeat, .wrapZ = gpu::Wrap::kRepeat};
+  return {.format = format,
+          .wrapX = gpu::Wrap::kRepeat,
+          .wrapY = gpu::Wrap::kRepeat,
+          .wrapZ = gpu::Wrap::kRepeat};
 }
 
 }  // namespace

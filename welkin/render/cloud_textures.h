@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of clouds on the GPU, in half floats (8-bit textures are filtered to 8 bits by software rasterisers, and band).
+// The noise of clouds on the GPU, in half floats (8-bit textures are filtered to 8 bits by software
+// rasterisers, and band).
 #pragma once
 
 #include <memory>

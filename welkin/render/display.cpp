@@ -10,15 +10,21 @@
 namespace welkin::render {
 namespace {
 
-// Luminance that exposure EV at ISO 100 renders as 1 (ISO 12232, saturation-based: 78 / 65 * 2^EV, S. Lagarde and C. de
-// Rousiers 2014, "Moving Frostbite to PBR", 5.1.2).
-double whiteLuminance(double ev) { return 1.2 * std::exp2(ev); }
-double evOfWhite(double luminance) { return std::log2(luminance / 1.2); }
+// Luminance that exposure EV at ISO 100 renders as 1 (ISO 12232, saturation-based: 78 / 65 * 2^EV, S. Lagarde
+// and C. de Rousiers 2014, "Moving Frostbite to PBR", 5.1.2).
+double whiteLuminance(double ev) {
+  return 1.2 * std::exp2(ev);
+}
+double evOfWhite(double luminance) {
+  return std::log2(luminance / 1.2);
+}
 
-float luminanceOf(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+float luminanceOf(const float* rgb) {
+  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
 
-// Linear up to kKnee, then a shoulder that reaches 1 at infinity with continuous slope: clouds keep their modelling up to the
-// sun, and what lies below the knee (the sky) is left as it is.
+// Linear up to kKnee, then a shoulder that reaches 1 at infinity with continuous slope: clouds keep their
+// modelling up to the sun, and what lies below the knee (the sky) is left as it is.
 constexpr float kSaturation = 1.18f;
 constexpr float kKnee = 0.45f;
 float shoulder(float x) {
@@ -27,23 +33,32 @@ float shoulder(float x) {
   return kKnee + (1.0f - kKnee) * (1.0f - std::exp(-y));
 }
 
-// IEC 61966-2-1.
-float encode(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f; }
+// What has no place in a picture becomes black (not a number, below 0) or plain white (without bound).
+float inRange(float x) {
+  return x > 0.0f ? std::min(x, 1e6f) : 0.0f;
+}
 
-// What is rendered as white: direct sunlight with the light of the sky at noon, about 5400 K, the daylight setting of cameras. The
-// primaries' own white (D65) is bluer, and sunlit clouds would look cream.
+// IEC 61966-2-1.
+float encode(float x) {
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
+}
+
+// What is rendered as white: direct sunlight with the light of the sky at noon, about 5400 K, the daylight
+// setting of cameras. The primaries' own white (D65) is bluer, and sunlit clouds would look cream.
 const float kWhiteBalance[3] = {1.0f / 1.12f, 1.0f, 1.0f / 0.90f};
 
 }  // namespace
 
 double automaticExposureEv(const Image<float>& luminance) {
-  // Percentiles from a sample of at most some ten thousand pixels on a regular grid: the same for any thread count.
+  // Percentiles from a sample of at most some ten thousand pixels on a regular grid: the same for any thread
+  // count.
   std::vector<float> values;
-  const int step = std::max(1, static_cast<int>(std::sqrt(luminance.width * luminance.height / 16384.0)));
+  const int step = std::max(
+      1, static_cast<int>(std::sqrt(static_cast<double>(luminance.width) * luminance.height / 16384.0)));
   for (int y = step / 2; y < luminance.height; y += step)
     for (int x = step / 2; x < luminance.width; x += step) {
       const float l = luminanceOf(&luminance.data[luminance.index(x, y)]);
-      if (l > 0.0f) values.push_back(l);  // 0: outside the image circle
+      if (l > 0.0f && std::isfinite(l)) values.push_back(l);  // 0: outside the image circle
     }
   if (values.empty()) return 15.0;
   // The brighter six tenths: a picture of the sky is exposed for the sky, however much dark ground is in it.
@@ -52,9 +67,9 @@ double automaticExposureEv(const Image<float>& luminance) {
   double logSum = 0.0;
   for (std::size_t i = first; i < values.size(); ++i) logSum += std::log(values[i]);
   const double mean = std::exp(logSum / static_cast<double>(values.size() - first));
-  // How bright the mean is to look: G. Krawczyk, K. Myszkowski and H.-P. Seidel 2005, "Perceptual Effects in Real-time Tone
-  // Mapping", eq. 11; dim scenes stay dim.
-  // Below the full moon's light no darker than is still to be read on a screen.
+  // How bright the mean is to look: G. Krawczyk, K. Myszkowski and H.-P. Seidel 2005, "Perceptual Effects in
+  // Real-time Tone Mapping", eq. 11; dim scenes stay dim. Below the full moon's light no darker than is still
+  // to be read on a screen.
   const double key = std::max(1.03 - 2.0 / (2.0 + std::log10(mean + 1.0)), 0.15);
   const double evMean = evOfWhite(mean / (0.56 * key));
   // Bright clouds must keep their modelling: the brightest twentieth may not pass twice white.
@@ -71,14 +86,17 @@ Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
         const float* in = &luminance.data[luminance.index(x, static_cast<int>(y))];
         float* o = &out.data[out.index(x, static_cast<int>(y))];
         float rgb[3];
-        for (int c = 0; c < 3; ++c) rgb[c] = std::max(in[c] * scale * kWhiteBalance[c], 0.0f);
-        // Colour is spread a little about the luminance, as every camera does: three primaries see skies paler than an eye.
+        for (int c = 0; c < 3; ++c) rgb[c] = inRange(in[c] * scale * kWhiteBalance[c]);
+        // Colour is spread a little about the luminance, as every camera does: three primaries see skies
+        // paler than an eye.
         const float grey = luminanceOf(rgb);
         for (float& v : rgb) v = std::max(grey + kSaturation * (v - grey), 0.0f);
-        // Half way between a curve on each channel (light things turn white) and one on the brightest (hues stay).
+        // Half way between a curve on each channel (light things turn white) and one on the brightest (hues
+        // stay).
         const float peak = std::max({rgb[0], rgb[1], rgb[2], 1e-9f});
         const float keep = shoulder(peak) / peak;
-        for (int c = 0; c < 3; ++c) o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + shoulder(rgb[c])), 0.0f, 1.0f));
+        for (int c = 0; c < 3; ++c)
+          o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + shoulder(rgb[c])), 0.0f, 1.0f));
       }
   });
   return out;

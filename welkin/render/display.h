@@ -6,7 +6,8 @@
 
 namespace welkin::render {
 
-// Exposure value (ISO 100) for a picture: from its log-mean luminance, with the eye's darker rendering of dim scenes.
+// Exposure value (ISO 100) for a picture: from its log-mean luminance, with the eye's darker rendering of dim
+// scenes.
 double automaticExposureEv(const Image<float>& luminance);
 
 // RGB cd/m2 to sRGB-encoded values in [0, 1].

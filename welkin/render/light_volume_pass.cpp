@@ -16,8 +16,7 @@ constexpr int kMostSamples = 6;  // of density along the line between two slices
 
 }  // namespace
 
-LightVolumePass::LightVolumePass()
-    : down_(fullscreenProgram("pass/light_volume_down.frag")) {
+LightVolumePass::LightVolumePass() : down_(fullscreenProgram("pass/light_volume_down.frag")) {
   for (gpu::Texture2D& t : neighbour_) t = gpu::Texture2D(kSide, kSide, {.format = gpu::Format::kRgba32F});
 }
 
@@ -40,17 +39,17 @@ void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVol
   for (int c = 0; c < cascades; ++c) sweepCascade(layout, c, clouds);
 }
 
-void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds) {
+void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int cascade,
+                                   const CloudTextures& clouds) {
   const int slices = static_cast<int>(layout.heightsM.size());
   const float halfM = layout.kHalfM[static_cast<std::size_t>(cascade)];
   const float voxelM = 2.0f * halfM / kSide;
   auto layer = [&](int slice) { return cascade * slices + slice; };
   auto texelW = [&](int slice) {
-    return (static_cast<float>(layer(slice)) + 0.5f) / static_cast<float>(slices * static_cast<int>(layout.kHalfM.size()));
+    return (static_cast<float>(layer(slice)) + 0.5f) /
+           static_cast<float>(slices * static_cast<int>(layout.kHalfM.size()));
   };
-  auto clearNeighbour = [&] {
-    gpu::Framebuffer(neighbour_[0]).clear();
-  };
+  auto clearNeighbour = [&] { gpu::Framebuffer(neighbour_[0]).clear(); };
 
   clearNeighbour();
   int band = static_cast<int>(layout.bands.size()) - 1;

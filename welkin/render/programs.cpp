@@ -6,8 +6,9 @@
 namespace welkin::render {
 
 gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shading::ShaderDefine> defines) {
-  return gpu::Program::graphics(shading::assembleShader("pass/fullscreen.vert", shading::ShaderDialect::kGl330),
-                                shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
+  return gpu::Program::graphics(
+      shading::assembleShader("pass/fullscreen.vert", shading::ShaderDialect::kGl330),
+      shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
 }
 
 gpu::Program& ProgramVariants::with(const shading::ShaderDefines& defines) {

@@ -13,7 +13,8 @@
 namespace welkin::render {
 
 // A full-screen pass: pass/fullscreen.vert with a fragment entry point. Throws GpuError.
-gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shading::ShaderDefine> defines = {});
+gpu::Program fullscreenProgram(std::string_view fragment,
+                               std::span<const shading::ShaderDefine> defines = {});
 
 // A full-screen pass with variants; each is made when first asked for, and kept.
 class ProgramVariants {

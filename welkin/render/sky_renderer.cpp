@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/draw.h"
 #include "welkin/gpu/framebuffer.h"
@@ -16,17 +17,21 @@
 namespace welkin::render {
 namespace {
 
-// Point i of a sequence that fills the unit square evenly from the start (M. Roberts 2018, "The Unreasonable Effectiveness of
-// Quasirandom Sequences": R2, R1 in one dimension).
+// Point i of a sequence that fills the unit square evenly from the start (M. Roberts 2018, "The Unreasonable
+// Effectiveness of Quasirandom Sequences": R2, R1 in one dimension).
 glm::vec2 quasiRandom2(int i) {
   auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * (i + 1), 1.0)); };
   return {part(0.7548776662466927), part(0.5698402909980532)};
 }
-float quasiRandom1(int i) { return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * (i + 1), 1.0)); }
+float quasiRandom1(int i) {
+  return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * (i + 1), 1.0));
+}
 
 }  // namespace
 
 struct SkyRenderer::Impl {
+  explicit Impl(const RendererOptions& options) : context({.debug = options.debug}) {}
+
   gpu::Context context;
   gpu::FullscreenTriangle triangle;
   ProgramVariants sky{"pass/sky.frag"};
@@ -34,19 +39,36 @@ struct SkyRenderer::Impl {
   std::optional<CloudTextures> clouds;
 };
 
-SkyRenderer::SkyRenderer() : impl_(std::make_unique<Impl>()) {}
-SkyRenderer::~SkyRenderer() = default;
+SkyRenderer::SkyRenderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+SkyRenderer::~SkyRenderer() {
+  // Another renderer's context may be current; what is deleted must be deleted in its own.
+  try {
+    impl_->context.makeCurrent();
+  } catch (const GpuError&) {
+    // Nothing can be deleted where nothing can be reached.
+  }
+}
 
-std::string SkyRenderer::deviceName() const { return impl_->context.deviceName(); }
+std::string SkyRenderer::deviceName() const {
+  return impl_->context.deviceName();
+}
+std::vector<std::string> SkyRenderer::takeErrors() {
+  impl_->context.makeCurrent();
+  return impl_->context.takeErrors();
+}
 
 Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
+  impl_->context.makeCurrent();
   Picture picture;
   gpu::Stopwatch watch;
   auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
-  const int width = static_cast<int>(state.scene.output.width), height = static_cast<int>(state.scene.output.height);
+  const int width = static_cast<int>(state.scene.output.width),
+            height = static_cast<int>(state.scene.output.height);
 
-  if (!impl_->clouds || impl_->clouds->noise() != state.clouds->sharedNoise()) impl_->clouds.emplace(state.clouds->sharedNoise());
-  const sky::SkyTables tables = sky::makeSkyTables(*state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
+  if (!impl_->clouds || impl_->clouds->noise() != state.clouds->sharedNoise())
+    impl_->clouds.emplace(state.clouds->sharedNoise());
+  const sky::SkyTables tables = sky::makeSkyTables(
+      *state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
   const gpu::TextureOptions half{.format = gpu::Format::kRgba16F}, full{.format = gpu::Format::kRgba32F};
   const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full);
   const gpu::Texture3D inscatter(tables.aerialInscatter, full), through(tables.aerialTransmittance, half);
@@ -77,7 +99,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   p.set("uWeight", 1.0f / static_cast<float>(settings.subframes));
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
-    p.set("uJitterStep", quasiRandom1(i));
+    p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
     // In bands of rows, so that progress is seen and Ctrl-C is heard.
     constexpr int kBands = 8;
     for (int b = 0; b < kBands; ++b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a SkyState: atmosphere, discs, ground and all volumetric layers in one march, accumulated to convergence.
+// Draws a SkyState: atmosphere, discs, ground and all volumetric layers in one march, accumulated to
+// convergence.
 #pragma once
 
 #include <functional>
@@ -18,18 +19,23 @@ struct PassTime {
 };
 
 struct Picture {
-  Image<float> luminance;           // RGB, linear Rec. 709, cd/m2
-  double autoExposureEv = 0.0;      // EV at ISO 100 that automatic exposure chooses for it
+  Image<float> luminance;       // RGB, linear Rec. 709, cd/m2
+  double autoExposureEv = 0.0;  // EV at ISO 100 that automatic exposure chooses for it
   std::vector<PassTime> passes;
 };
 
 // Called with the fraction done in [0, 1]; may throw to stop (Interrupted).
 using Progress = std::function<void(double fraction)>;
 
-// Owns a headless graphics context and everything on it. Not thread-safe: use from the thread that made it.
+struct RendererOptions {
+  bool debug = false;  // record what the driver reports as errors; slower on some drivers
+};
+
+// Owns a headless graphics context and everything on it. Not thread-safe: use from the thread that made it,
+// beside others if wished.
 class SkyRenderer {
  public:
-  SkyRenderer();  // throws GpuError where there is no EGL
+  explicit SkyRenderer(const RendererOptions& options = {});  // throws GpuError where there is no EGL
   ~SkyRenderer();
   SkyRenderer(const SkyRenderer&) = delete;
   SkyRenderer& operator=(const SkyRenderer&) = delete;
@@ -38,6 +44,9 @@ class SkyRenderer {
   Picture draw(const scene::SkyState& state, const Progress& progress = {});
 
   std::string deviceName() const;
+
+  // What the driver has reported since the last call, see gpu::Context::takeErrors(). Empty is good.
+  std::vector<std::string> takeErrors();
 
  private:
   struct Impl;

@@ -14,11 +14,11 @@ namespace {
 
 constexpr double kOktas = 8.0;
 
-// Illuminance that a light sends through the air onto a horizontal plane at the ground.
-glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light) {
+// Illuminance that a light sends through the air onto a horizontal plane at a height above the ground.
+glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light, double heightM) {
   const double mu = light.direction.z;
   if (mu <= 0.0) return glm::vec3(0.0f);
-  return light.illuminance * atmosphere.transmittanceToSpace(atmosphere.groundAltitudeM(), mu) *
+  return light.illuminance * atmosphere.transmittanceToSpace(atmosphere.groundAltitudeM() + heightM, mu) *
          static_cast<float>(mu);
 }
 
@@ -44,12 +44,17 @@ AmbientLight ambientLight(const SkyState& s) {
   a.skyHigh =
       atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
   const float through = static_cast<float>(diffuseTransmittance(s.weather, *s.clouds));
-  glm::vec3 direct(0.0f);
-  for (const sky::Light& light : s.lights) direct += horizontalIlluminance(atmosphere, light);
+  // What falls on the clouds has not yet passed the haze beneath them.
+  const double topM = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().topM;
+  glm::vec3 direct(0.0f), onClouds(0.0f);
+  for (const sky::Light& light : s.lights) {
+    direct += horizontalIlluminance(atmosphere, light, 0.0);
+    onClouds += horizontalIlluminance(atmosphere, light, topM);
+  }
   // Direct light that clouds take from the ground comes back as diffuse light, as much as they let through.
   const float cover = static_cast<float>(s.weather.requestedOktas / kOktas);
   const float diffused = std::max(through - (1.0f - cover), 0.0f);
-  a.skyOnGround = skyOnGround * through + direct * diffused;
+  a.skyOnGround = skyOnGround * through + onClouds * diffused;
   a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
   // From above the clouds most of the air in view is sunlit.
   const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;

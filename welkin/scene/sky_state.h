@@ -20,8 +20,8 @@ struct AmbientLight {
   glm::vec3 skyHigh{0};      // the same at 10 km
   glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
   glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
-  float clearAir = 1.0f;      // share of the air beneath the clouds that the sun reaches
-  glm::vec3 haze{0};          // mean luminance about the eye where it does not, cd/m2
+  float clearAir = 1.0f;     // share of the air beneath the clouds that the sun reaches
+  glm::vec3 haze{0};         // mean luminance about the eye where it does not, cd/m2
 };
 
 struct SkyState {

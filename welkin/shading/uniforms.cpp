@@ -57,7 +57,8 @@ Uniforms skyUniforms(const scene::SkyState& state) {
     diameter += 2.0 * layer.effectiveRadiusUm * layer.oktas;
     weight += layer.oktas;
   }
-  const optics::DropletPhase droplets = optics::dropletPhase(static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
+  const optics::DropletPhase droplets =
+      optics::dropletPhase(static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
   u.emplace_back("uDroplets.gHg", droplets.gHg);
   u.emplace_back("uDroplets.gDraine", droplets.gDraine);
   u.emplace_back("uDroplets.alpha", droplets.alpha);
@@ -85,7 +86,7 @@ MarchSettings marchSettings(scene::Quality quality) {
     case scene::Quality::kLow:
       return {.subframes = 3, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
     case scene::Quality::kMedium:
-      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
+      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 3};
     case scene::Quality::kHigh:
       return {.subframes = 16, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
     case scene::Quality::kUltra:
@@ -95,12 +96,9 @@ MarchSettings marchSettings(scene::Quality quality) {
 }
 
 Uniforms marchUniforms(const MarchSettings& settings) {
-  return {{"uStepNearM", settings.stepNearM},
-          {"uStepShare", settings.stepShare},
-          {"uStepLong", settings.stepLong},
-          {"uMaxSteps", settings.maxSteps},
-          {"uSunSamples", settings.sunSamples},
-          {"uSunReachM", 450.0f}};
+  return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
+          {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
+          {"uSunSamples", settings.sunSamples}, {"uSunReachM", 400.0f}};
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {
@@ -127,7 +125,8 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
   const auto layers = state.clouds->layers();
   std::vector<int> order(layers.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::pair(layers[a].baseM, a) < std::pair(layers[b].baseM, b); });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return std::pair(layers[a].baseM, a) < std::pair(layers[b].baseM, b); });
   for (const int i : order) {
     const field::CloudLayer& layer = layers[static_cast<std::size_t>(i)];
     if (layout.bands.empty() || layer.baseM > layout.bands.back().topM)
@@ -188,7 +187,9 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
     up += call;
     if (eyeM > layout.bands[static_cast<std::size_t>(b)].baseM) down = call + down;
   }
-  return {{"WELKIN_EACH_LAYER(CALL)", layers}, {"WELKIN_EACH_BAND_DOWN(CALL)", down}, {"WELKIN_EACH_BAND_UP(CALL)", up}};
+  return {{"WELKIN_EACH_LAYER(CALL)", layers},
+          {"WELKIN_EACH_BAND_DOWN(CALL)", down},
+          {"WELKIN_EACH_BAND_UP(CALL)", up}};
 }
 
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band) {

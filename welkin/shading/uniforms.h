@@ -61,8 +61,8 @@ struct LightVolumeLayout {
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
 
-// What is compiled into programs (lib/cloud_uniforms.glsl): the layers of all bands, and the order in which a march from an eye at
-// a height meets them; or one band alone.
+// What is compiled into programs (lib/cloud_uniforms.glsl): the layers of all bands, and the order in which a
+// march from an eye at a height meets them; or one band alone.
 using ShaderDefines = std::vector<ShaderDefine>;
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
