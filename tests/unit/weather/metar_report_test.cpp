@@ -132,8 +132,9 @@ TEST(MetarReport, TextBehindTheEndSignIsAnError) {
 }
 
 TEST(MetarReport, MessagesShowNoStrangeBytes) {
-  const auto r = parseMetar(
-      std::string_view("KMRY 211753Z \x01\xff\x00\x1b[31mXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXX", 62));
+  // A literal with a zero inside: its length is its array's, less the one at the end.
+  constexpr char kReport[] = "KMRY 211753Z \x01\xff\x00\x1b[31mXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXXX";
+  const auto r = parseMetar(std::string_view(kReport, sizeof(kReport) - 1));
   ASSERT_EQ(r.errors.size(), 1u);
   EXPECT_EQ(r.errors[0].column, 14u);
   for (const char c : r.errors[0].reason) EXPECT_TRUE(c >= ' ' && c <= '~');
