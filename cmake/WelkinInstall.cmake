@@ -7,22 +7,12 @@ include(CMakePackageConfigHelpers)
 add_library(welkin_all INTERFACE)
 add_library(welkin::welkin ALIAS welkin_all)
 set_target_properties(welkin_all PROPERTIES EXPORT_NAME welkin)
-foreach(folder IN LISTS WELKIN_FOLDERS)
-  if(TARGET welkin_${folder})
-    target_link_libraries(welkin_all INTERFACE welkin::${folder})
-  endif()
-endforeach()
+list(TRANSFORM WELKIN_FOLDERS PREPEND welkin:: OUTPUT_VARIABLE folders)
+target_link_libraries(welkin_all INTERFACE ${folders})
 install(TARGETS welkin_all EXPORT welkin-targets)
 
 # The packages that the exported targets name, for find_dependency(). A target that is missing here makes tests/install fail.
-set(WELKIN_PACKAGES Threads glm Erfa)
-if(TARGET welkin_io)
-  string(APPEND WELKIN_PACKAGES ";OpenEXR;PNG")
-endif()
-if(TARGET welkin_gpu)
-  string(APPEND WELKIN_PACKAGES ";Epoxy")
-endif()
-string(REPLACE ";" " " WELKIN_PACKAGES "${WELKIN_PACKAGES}")
+set(WELKIN_PACKAGES "Threads glm Erfa OpenEXR PNG Epoxy")
 
 # <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
 # common a name to stand in <prefix>/include itself.
