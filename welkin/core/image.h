@@ -17,8 +17,7 @@ struct Image {
   std::vector<T> data;
 
   Image() = default;
-  Image(int w, int h, int c)
-      : width(w), height(h), channels(c), data(static_cast<std::size_t>(w) * h * c) {}
+  Image(int w, int h, int c) : width(w), height(h), channels(c), data(static_cast<std::size_t>(w) * h * c) {}
 
   std::size_t index(int x, int y, int c = 0) const {
     assert(x >= 0 && x < width && y >= 0 && y < height && c >= 0 && c < channels);

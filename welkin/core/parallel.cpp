@@ -21,7 +21,9 @@ int threadCount() {
   return n > 0 ? n : std::max(1u, std::thread::hardware_concurrency());
 }
 
-void setThreadCount(int n) { gThreads.store(std::max(n, 0)); }
+void setThreadCount(int n) {
+  gThreads.store(std::max(n, 0));
+}
 
 void parallelFor(std::size_t count, std::size_t grain,
                  const std::function<void(std::size_t, std::size_t)>& body) {

@@ -5,8 +5,8 @@
 //     v.value({"height_m", "m", "thickness of the fog", 0, 1000}, p.heightM);
 //   }
 //
-// Scene files, command-line help, JSON, panels and documentation are visitors; none of them repeats a name, unit, range or
-// default. A key is snake_case and ends in its unit when that is not plain from the meaning.
+// Scene files, command-line help, JSON, panels and documentation are visitors; none of them repeats a name,
+// unit, range or default. A key is snake_case and ends in its unit when that is not plain from the meaning.
 #pragma once
 
 #include <array>
@@ -98,8 +98,8 @@ class ParamVisitor {
   virtual bool wantsListPrototype() const { return false; }
 };
 
-// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours), or empty when none is near
-// enough to be what was meant.
+// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours), or empty
+// when none is near enough to be what was meant.
 std::string nearestName(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace welkin

@@ -17,14 +17,18 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
 }
 
 // Hash of any number of integers, sensitive to their order.
-constexpr std::uint64_t hashOf(std::uint64_t a) { return mixBits(a + 0x9e3779b97f4a7c15ULL); }
+constexpr std::uint64_t hashOf(std::uint64_t a) {
+  return mixBits(a + 0x9e3779b97f4a7c15ULL);
+}
 template <class... Rest>
 constexpr std::uint64_t hashOf(std::uint64_t a, Rest... rest) {
   return mixBits(hashOf(a) ^ (hashOf(static_cast<std::uint64_t>(rest)...) * 0x9e3779b97f4a7c15ULL));
 }
 
 // A uniform number in [0, 1) from the top 24 bits of a hash; exact in float.
-constexpr float unitFloat(std::uint64_t h) { return static_cast<float>(h >> 40) * (1.0f / 16777216.0f); }
+constexpr float unitFloat(std::uint64_t h) {
+  return static_cast<float>(h >> 40) * (1.0f / 16777216.0f);
+}
 
 // SplitMix64 sequence. Cheap to make: one for each task, seeded by hashOf(seed, task).
 class Random {

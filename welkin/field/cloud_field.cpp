@@ -21,7 +21,8 @@ constexpr int kPlacementSize = 512;
 constexpr int kShapeSize = 128;
 constexpr int kDetailSize = 64;
 
-// Ray parameters at which a sphere of radius r is crossed; p relative to the ground under the eye. False: missed.
+// Ray parameters at which a sphere of radius r is crossed; p relative to the ground under the eye. False:
+// missed.
 bool crossings(glm::vec3 p, glm::vec3 d, double earthRadius, double height, double& t0, double& t1) {
   const double px = p.x, py = p.y, pz = earthRadius + p.z;
   const double b = px * d.x + py * d.y + pz * d.z;
@@ -48,14 +49,17 @@ std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed) {
                                 noise::gaussianMap(hashOf(seed, 3), kPlacementSize, patches)};
   for (std::size_t i = 0; i < maps[0].data.size(); ++i)
     for (int c = 0; c < 3; ++c) noise->placement.data[3 * i + c] = maps[c].data[i];
-  noise->shape = noise::billowVolume(
-      hashOf(seed, 4), kShapeSize, {.octaves = 4, .frequency = 5, .lacunarity = 2, .persistence = 0.5f}, 0.85f);
-  noise->detail = noise::billowVolume(
-      hashOf(seed, 5), kDetailSize, {.octaves = 3, .frequency = 5, .lacunarity = 2, .persistence = 0.6f}, 0.9f);
+  noise->shape =
+      noise::billowVolume(hashOf(seed, 4), kShapeSize,
+                          {.octaves = 4, .frequency = 5, .lacunarity = 2, .persistence = 0.5f}, 0.85f);
+  noise->detail =
+      noise::billowVolume(hashOf(seed, 5), kDetailSize,
+                          {.octaves = 3, .frequency = 5, .lacunarity = 2, .persistence = 0.6f}, 0.9f);
   return noise;
 }
 
-CloudField::CloudField(std::shared_ptr<const CloudNoise> noise, std::vector<CloudLayer> layers, double groundAltitudeM)
+CloudField::CloudField(std::shared_ptr<const CloudNoise> noise, std::vector<CloudLayer> layers,
+                       double groundAltitudeM)
     : noise_(std::move(noise)), layers_(std::move(layers)), earthRadiusM_(kEarthRadiusM + groundAltitudeM) {
   if (layers_.size() > static_cast<std::size_t>(kMaxLayers))
     throw ParameterError("a sky has at most " + std::to_string(kMaxLayers) + " layers of cloud, not " +
@@ -67,7 +71,8 @@ float CloudField::extinction(glm::vec3 p) const {
   const sampler3D shape{&noise_->shape, Wrap::kRepeat}, detail{&noise_->detail, Wrap::kRepeat};
   const glm::vec3 q = cloudPosition(p, static_cast<float>(earthRadiusM_));
   float sum = 0.0f, clear = 0.0f;
-  for (const CloudLayer& layer : layers_) sum += cloudExtinction(layer, placement, shape, detail, q, 1.0f, clear);
+  for (const CloudLayer& layer : layers_)
+    sum += cloudExtinction(layer, placement, shape, detail, q, 1.0f, clear);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The density of all clouds of a scene: layers over one set of noise textures. Extinction in 1/m as a pure function of position; the
-// instant is in the layers' displacements. Immutable; safe to share between threads.
+// The density of all clouds of a scene: layers over one set of noise textures. Extinction in 1/m as a pure
+// function of position; the instant is in the layers' displacements. Immutable; safe to share between
+// threads.
 //
 // Frame: east-north-up, origin on the ground under the eye; the ground is a sphere of radius earthRadiusM().
 #pragma once
@@ -21,9 +22,9 @@ inline constexpr int kMaxLayers = 8;
 
 // The noise that clouds are made of; tileable. Depends on the seed alone.
 struct CloudNoise {
-  Image<float> placement;   // 3 channels: round cells, fractal noise, patches; each standard normal
-  Volume<float> shape;      // 1 channel, mean 0, variance 1
-  Volume<float> detail;     // the same, finer
+  Image<float> placement;  // 3 channels: round cells, fractal noise, patches; each standard normal
+  Volume<float> shape;     // 1 channel, mean 0, variance 1
+  Volume<float> detail;    // the same, finer
 };
 std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed);
 
@@ -40,7 +41,8 @@ class CloudField {
   // Extinction at p, 1/m.
   float extinction(glm::vec3 p) const;
 
-  // Optical depth along a ray from `from` through everything, or at least `enough` once it is reached. `only` picks one layer; -1: all.
+  // Optical depth along a ray from `from` through everything, or at least `enough` once it is reached. `only`
+  // picks one layer; -1: all.
   float opticalDepth(glm::vec3 from, glm::vec3 direction, float enough, int only = -1) const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shape of one layer of cloud; the struct itself stands in shaders/lib/cloud_layer.glsl, for CPU and GPU alike.
+// The shape of one layer of cloud; the struct itself stands in shaders/lib/cloud_layer.glsl, for CPU and GPU
+// alike.
 #pragma once
 
 #include <glm/vec2.hpp>

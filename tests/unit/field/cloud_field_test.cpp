@@ -29,7 +29,8 @@ TEST(CloudField, NeverExceedsWhatTheBodyMayHave) {
   Random random(2);
   float greatest = 0.0f;
   for (int i = 0; i < 20000; ++i) {
-    const float e = field.extinction({1e4f * random.uniform(), 1e4f * random.uniform(), 1000.0f + 1000.0f * random.uniform()});
+    const float e = field.extinction(
+        {1e4f * random.uniform(), 1e4f * random.uniform(), 1000.0f + 1000.0f * random.uniform()});
     EXPECT_GE(e, 0.0f);
     greatest = std::max(greatest, e);
   }
@@ -70,7 +71,8 @@ TEST(CloudField, OpticalDepthOfAShellIsExact) {
   const CloudLayer sheet = sheetLike();
   const CloudField field(testNoise(), {sheet}, 0.0);
   const float vertical = sheet.extinction * (sheet.topM - sheet.baseM);
-  const float softened = 0.5f * (sheet.bottomSoft + sheet.topSoft);  // smoothstep fades integrate to half their width
+  const float softened =
+      0.5f * (sheet.bottomSoft + sheet.topSoft);  // smoothstep fades integrate to half their width
   EXPECT_NEAR(field.opticalDepth({0, 0, 2}, {0, 0, 1}, 1e9f), vertical * (1 - softened), 0.01f * vertical);
   const double elevation = radians(10.0);
   const glm::vec3 d(static_cast<float>(std::cos(elevation)), 0.0f, static_cast<float>(std::sin(elevation)));
@@ -88,8 +90,9 @@ TEST(CloudField, SeesLayersFromAboveAndFromWithin) {
   const float through = field.opticalDepth({0, 0, 2}, {0, 0, 1}, 1e9f);
   EXPECT_NEAR(field.opticalDepth({0, 0, 9000}, {0, 0, -1}, 1e9f), through, 0.01f * through);
   const float middle = 0.5f * (sheet.baseM + sheet.topM);
-  EXPECT_NEAR(field.opticalDepth({0, 0, middle}, {0, 0, 1}, 1e9f) + field.opticalDepth({0, 0, middle}, {0, 0, -1}, 1e9f), through,
-              0.02f * through);
+  EXPECT_NEAR(field.opticalDepth({0, 0, middle}, {0, 0, 1}, 1e9f) +
+                  field.opticalDepth({0, 0, middle}, {0, 0, -1}, 1e9f),
+              through, 0.02f * through);
 }
 
 // Empty-space steps must not jump over cloud: fine steps that trust no hint find the same optical depth.
@@ -99,18 +102,21 @@ TEST(CloudField, EmptySpaceStepsMissNothing) {
   for (int i = 0; i < 300; ++i) {
     const double azimuth = i * 2.4, elevation = radians(15.0 + 70.0 * i / 300.0);
     const glm::vec3 d(static_cast<float>(std::cos(elevation) * std::sin(azimuth)),
-                      static_cast<float>(std::cos(elevation) * std::cos(azimuth)), static_cast<float>(std::sin(elevation)));
+                      static_cast<float>(std::cos(elevation) * std::cos(azimuth)),
+                      static_cast<float>(std::sin(elevation)));
     quick += std::min(field.opticalDepth({0, 0, 2}, d, 50.0f), 50.0f);
     double tau = 0;
     const double from = 990.0 / std::sin(elevation), to = 2010.0 / std::sin(elevation);
-    for (double t = from; t < to && tau < 50; t += 6.0) tau += 6.0 * field.extinction(glm::vec3(0, 0, 2) + d * static_cast<float>(t));
+    for (double t = from; t < to && tau < 50; t += 6.0)
+      tau += 6.0 * field.extinction(glm::vec3(0, 0, 2) + d * static_cast<float>(t));
     slow += std::min(tau, 50.0);
   }
   EXPECT_NEAR(quick, slow, 0.04 * slow);
 }
 
 TEST(CloudField, RefusesTooManyLayers) {
-  EXPECT_THROW(CloudField(testNoise(), std::vector<CloudLayer>(kMaxLayers + 1, sheetLike()), 0.0), ParameterError);
+  EXPECT_THROW(CloudField(testNoise(), std::vector<CloudLayer>(kMaxLayers + 1, sheetLike()), 0.0),
+               ParameterError);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ inline CloudLayer cumulusLike(float threshold) {
   CloudLayer l{};
   l.baseM = 1000, l.topM = 2000, l.extinction = 0.05f, l.threshold = threshold;
   l.along = {1, 0}, l.stretch = 1;
-  l.cellM = 18000, l.cellWeight = 0.8f, l.fractalWeight = 0.35f, l.patchWeight = 0.48f, l.patchM = 50000, l.warpM = 300;
+  l.cellM = 18000, l.cellWeight = 0.8f, l.fractalWeight = 0.35f, l.patchWeight = 0.48f, l.patchM = 50000,
+  l.warpM = 300;
   l.dome = 1.1f, l.domePower = 1.7f, l.bottomSoft = 0.05f, l.topSoft = 0.1f;
   l.shapeM = 2500, l.shapeAmount = 0.4f, l.shapeAtBase = 0.2f, l.shapeStretch = 1;
   l.detailM = 500, l.detailAmount = 0.12f;
