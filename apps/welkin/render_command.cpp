@@ -52,7 +52,6 @@ class Sequence {
     const Clock::time_point begin = Clock::now();
     scene::weatherOf(settings_.scene);  // a report that cannot be read is said before anything heavy starts
     setThreads(settings_.threads);
-    catchInterrupts();
     ProgressLine progress;
     progress.begin("building the sky");
     render::SkyRenderer renderer = makeRenderer();
@@ -113,6 +112,7 @@ class Sequence {
 
 int runRender(const RenderArgs& args) {
   const RenderSettings settings = renderSettings(args);
+  catchInterrupts();  // from here on there may be unfinished files
   if (!settings.report.empty()) checkWritable(settings.report);
   const RenderReport report = Sequence(settings).draw();
   if (!settings.report.empty()) io::writeTextFile(settings.report, reportJson(settings, report));

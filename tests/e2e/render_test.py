@@ -2,6 +2,7 @@
 """Pictures: that they are there, say what they should, do not depend on threads, and that Ctrl-C leaves nothing."""
 import json
 import os
+import select
 import signal
 import struct
 import subprocess
@@ -110,32 +111,61 @@ class Frames(ProgramTest):
 
 
 class Interruption(ProgramTest):
-    def interrupt(self, seconds, *args, number=signal.SIGINT):
-        process = subprocess.Popen([PROGRAM, "render", *args], cwd=self.folder, stderr=subprocess.PIPE, start_new_session=True)
-        time.sleep(seconds)
-        self.assertIsNone(process.poll(), "finished before it could be interrupted")
-        os.killpg(process.pid, number)  # as a terminal does: children such as ffmpeg get it as well
-        _, stderr = process.communicate(timeout=120)
-        self.assertEqual(process.returncode, 130)
-        self.assertEqual(stderr, b"welkin: interrupted\n")
+    """The signal is sent once the program has shown that it is at work, on its terminal or by its files, and never after a time that
+    another machine may need for starting."""
+    DEADLINE_S = 240
+    LARGE = [*CUMULUS, "--size", "1920x1080", "--quality", "ultra"]
+
+    def start(self, *args, stderr):
+        process = subprocess.Popen([PROGRAM, "render", *args], cwd=self.folder, stderr=stderr, start_new_session=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def interrupt_on_terminal(self, *args, updates=1, number=signal.SIGINT):
+        """Interrupts after the progress line has said `updates` times that it is drawing."""
+        ours, its = os.openpty()
+        self.addCleanup(os.close, ours)
+        process = self.start(*args, stderr=its)
+        os.close(its)
+        said, sent, deadline = b"", False, time.monotonic() + self.DEADLINE_S
+        while select.select([ours], [], [], max(0, deadline - time.monotonic()))[0]:
+            try:
+                said += os.read(ours, 4096)
+            except OSError:  # the program has closed its end, which is how terminals say so
+                break
+            if not sent and said.count(b"\rdrawing") >= updates:
+                os.killpg(process.pid, number)  # as a terminal does
+                sent = True
+        self.assertTrue(sent, said)
+        self.assertEqual(process.wait(self.DEADLINE_S), 130, said)
+        self.assertTrue(said.endswith(b"\r\x1b[Kwelkin: interrupted\r\n"), said)
 
     def test_still(self):
-        self.interrupt(1.0, *CUMULUS, "--size", "1920x1080", "--quality", "ultra", "-o", "x.png", "--report", "r.json")
+        self.interrupt_on_terminal(*self.LARGE, "-o", "x.png", "--report", "r.json")
         self.assertEqual(self.files(), [])
 
     def test_an_older_picture_stays(self):
         self.write("x.exr", "old")
-        self.interrupt(1.0, *CUMULUS, "--size", "1920x1080", "--quality", "ultra", "-o", "x.exr", number=signal.SIGTERM)
+        self.interrupt_on_terminal(*self.LARGE, "-o", "x.exr", number=signal.SIGTERM)
         self.assertEqual(self.files(), ["x.exr"])
         self.assertEqual((self.folder / "x.exr").read_text(), "old")
 
     def test_video(self):
-        self.interrupt(4.0, *CUMULUS, *TINY, "-o", "x.mp4", "--frames", "100000")
+        self.interrupt_on_terminal(*CUMULUS, *TINY, "-o", "x.mp4", "--frames", "100000", updates=5)
         self.assertEqual(self.files(), [])
 
     def test_frames_are_whole(self):
-        self.interrupt(4.0, *CUMULUS, *TINY, "-o", "f_%06d.png", "--frames", "100000")
-        self.assertTrue(self.files())
+        process = self.start(*CUMULUS, *TINY, "-o", "f_%06d.png", "--frames", "100000", stderr=subprocess.PIPE)
+        deadline = time.monotonic() + self.DEADLINE_S
+        while len(list(self.folder.glob("f_*.png"))) < 2:
+            self.assertIsNone(process.poll(), "ended by itself")
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)
+        _, stderr = process.communicate(timeout=self.DEADLINE_S)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(stderr, b"welkin: interrupted\n")
         for name in self.files():
             self.assertEqual(read_png(self.folder / name)[:2], (96, 54))
 

@@ -3,7 +3,6 @@
 
 #include <stdlib.h>
 
-#include <chrono>
 #include <optional>
 #include <thread>
 
@@ -105,7 +104,6 @@ TEST_F(Video, SameFramesSameBytes) {
 }
 
 TEST_F(Video, InterruptedLeavesNothing) {
-  const auto begin = std::chrono::steady_clock::now();
   try {
     VideoWriter video(folder / "a.mp4", {.width = 640, .height = 360, .fps = 30});
     for (int i = 0; i < 5; ++i) video.write(frame(640, 360, i));
@@ -113,7 +111,6 @@ TEST_F(Video, InterruptedLeavesNothing) {
   } catch (const Interrupted&) {
   }
   EXPECT_EQ(fileCount(), 0);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 TEST_F(Video, ParametersAreChecked) {
