@@ -4,18 +4,22 @@
 // Multiple scattering takes the cloud around a point for a slab across the line to the sun, of the optical depths found along that
 // line, and uses the Eddington solution of conservative scattering in it, scaled by similarity: E. P. Shettle and J. A. Weinman
 // 1970, "The Transfer of Solar Irradiance Through Inhomogeneous Turbid Atmospheres Evaluated by Eddington's Approximation";
-// J. H. Joseph, W. J. Wiscombe and J. A. Weinman 1976, "The Delta-Eddington Approximation for Radiative Flux Transfer". Light
-// scattered only a few times, still mostly forward, is a lobe between the two. The three constants are fitted to
-// discrete-ordinates slabs of optical depth 1, 4, 16 and 64 under suns at 90 and 30 degrees: albedo, transmittance and
-// nadir radiance agree to 15 % in the median, 35 % at worst (docs/theory.md has the table).
+// J. H. Joseph, W. J. Wiscombe and J. A. Weinman 1976, "The Delta-Eddington Approximation for Radiative Flux Transfer". Droplets
+// scatter forward, so that the diffuse light seen by them leaves mostly the way it goes: the source has the Eddington radiance's
+// part along the flux too, without which sunlit faces are less than half as bright as they are. Light scattered only a few times,
+// still mostly forward, is a lobe between the first scattering and the diffuse light. The five constants are fitted to
+// discrete-ordinates slabs of optical depth 1, 4, 16 and 64 under suns at 90 and 30 degrees: albedo, transmittance and nadir
+// radiance agree to 10 % in the median, 30 % at worst (docs/theory.md has the table, tests/unit/render/cloud_light_test.cpp the check).
 // Light from the sky above and the ground below uses the same solution for diffuse light; in equal light from both sides the cloud
 // vanishes, as it must.
 
 WELKIN_CONST float kDropletAsymmetry = 0.86f;          // mean cosine of scattering by cloud droplets
 WELKIN_CONST float kSimilarity = 1.0f - kDropletAsymmetry;
-WELKIN_CONST float kForwardLobe = 1.275f;              // weight and
-WELKIN_CONST float kForwardLobeG = 0.747f;             // mean cosine of the lobe of light scattered a few times
-WELKIN_CONST float kDiffuseWeight = 0.689f;            // of the Eddington fluence as a source
+WELKIN_CONST float kForwardLobe = 1.62f;               // weight and
+WELKIN_CONST float kForwardLobeG = 0.593f;             // mean cosine of the lobe of light scattered a few times
+WELKIN_CONST float kDiffuseWeight = 1.06f;             // of the Eddington radiance as a source
+WELKIN_CONST float kDiffuseG = 0.594f;                 // share of its part along the flux; up to 2/3 no direction is dark
+WELKIN_CONST float kDiffuseOnset = 0.32f;              // per optical depth: how soon a cloud is thick enough for diffuse light
 
 // Optical depths from a point: along the line to the sun and back, up and down.
 struct CloudDepths {
@@ -26,20 +30,26 @@ struct CloudDepths {
 };
 
 // Scattered radiance per unit extinction and unit sun illuminance, 1/sr. phase: the first scattering's, 1/sr; cosSun: of the
-// angle between the direction of view and the sun; sunHeight: sine of the sun's elevation.
-WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float sunHeight) {
+// angle between the direction of view and the sun; viewHeight, sunHeight: sines of their elevations.
+WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float viewHeight, float sunHeight) {
   const float pi = 3.14159265f;
   float direct = exp(-d.toSun);
   // Inclination of the light to the slab: as the layer lies where depths agree with it, facing the sun where they do not.
-  float mu = clamp(d.up / max(d.toSun, 1e-3f), clamp(sunHeight, 0.1f, 1.0f), 1.0f);
+  float asLayer = clamp(sunHeight, 0.1f, 1.0f);
+  float mu = clamp(d.up / max(d.toSun, 1e-3f), asLayer, 1.0f);
+  // Cosine between the direction of view and the slab's normal, which turns from the vertical to the sun.
+  float facing = mix(viewHeight, cosSun, (mu - asLayer) / max(1.0f - asLayer, 1e-3f));
   float depth = kSimilarity * mu * d.toSun;
   float total = depth + kSimilarity * mu * d.fromSun;
   float beamHere = exp(-depth / mu), beamThrough = exp(-total / mu);
   float transmitted = (2.0f / 3.0f + mu + (2.0f / 3.0f - mu) * beamThrough) / (4.0f / 3.0f + total);
   float fluence = 3.0f * mu * transmitted * (total - depth + 2.0f / 3.0f) - 2.0f * mu * beamThrough +
                   3.0f * mu * mu * (beamThrough - beamHere);
+  float flux = mu * (transmitted - beamHere);  // of diffuse light away from the sun
+  float diffuse = kDiffuseWeight * max(fluence + 3.0f * kDiffuseG * flux * facing, 0.0f) / (4.0f * pi);
+  diffuse *= 1.0f - exp(-kDiffuseOnset * mu * (d.toSun + d.fromSun));
   float forward = kForwardLobe * phaseHenyeyGreenstein(cosSun, kForwardLobeG) * max(beamHere - direct, 0.0f);
-  return phase * direct + forward + kDiffuseWeight * max(fluence, 0.0f) / (4.0f * pi);
+  return phase * direct + forward + diffuse;
 }
 
 // Shares in [0, 1] of uniform radiance from above (x) and from below (y) that arrive at a point as mean radiance.

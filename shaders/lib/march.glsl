@@ -5,7 +5,9 @@
 
 uniform float uEyeM;              // height of the eye above the ground
 uniform vec3 uKeyDirection;       // towards the light that lights the clouds, sun or moon
-uniform vec3 uKeyIlluminance;     // at the top of the atmosphere, lux
+uniform sampler2D uKeyLight;      // its illuminance through the air, lux, by height and by the sine of its elevation
+uniform float uKeyLightTopM;      // height of the table's end
+uniform float uKeyLightReach;     // sines are those at the eye +- this
 uniform Atmosphere uAtmosphere;
 uniform float uGroundAltitudeM;   // of the ground above mean sea level
 uniform sampler2D uTransmittance;
@@ -18,7 +20,7 @@ uniform float uStepNearM;         // smallest step
 uniform float uStepShare;         // step as a share of the distance
 uniform float uStepLong;          // the longest step through clear air, in those of the above
 uniform int uMaxSteps;
-uniform int uSunSamples;          // density samples towards the sun before the light volume takes over
+uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
 uniform float uSunReachM;         // how far they reach
 
 struct CloudRay {
@@ -50,34 +52,32 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
   return vec2(max(outer.x, 0.0), innerHit ? inner.x : outer.y);
 }
 
+// The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
+// day over some clouds and dusk over others.
 vec3 keyLightAt(float heightM, vec3 p) {
-  vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
-  return uKeyIlluminance *
-         atmosphereTransmittance(uAtmosphere, uTransmittance, heightM + uGroundAltitudeM, dot(up, uKeyDirection));
+  float sine = uKeyDirection.z + dot(vec2(p), vec2(uKeyDirection)) / uEarthRadiusM;
+  return vec3(textureLod(uKeyLight, vec2(heightM / uKeyLightTopM, 0.5 + 0.5 * (sine - uKeyDirection.z) / uKeyLightReach), 0.0));
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float detail, float dither) {
-  float near = 0.0;
-  float done = 0.0;
-  // Distances grow cubically: fine where shadows are sharp. Thin cloud has none that the light volume would miss.
-  int samples = point.extinction * uSunReachM > 0.5 ? uSunSamples : 0;
-  for (int i = 0; i < samples; ++i) {
-    float x = (float(i) + 1.0) / float(uSunSamples);
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float dither) {
+  // Towards the sun: first through the point's own density, then through samples of the large shapes at distances that grow
+  // cubically, fine where shadows are sharp; then as the light volume says.
+  float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
+  float near = point.extinction * done;
+  for (int i = 1; i <= uSunSamples; ++i) {
+    float x = (float(i) + 1.0) / (float(uSunSamples) + 1.0);
     float end = uSunReachM * x * x * x;
     float at = mix(done, end, fract(dither + 0.382 * float(i)));
-    vec3 s = cloudPosition(p + uKeyDirection * at, uEarthRadiusM);
-    near += (end - done) * cloudsInBand(band, s, i < 2 ? detail : 0.0).extinction;
+    near += (end - done) * cloudsInBand(band, q + uKeyDirection * at, 0.0).extinction;
     done = end;
-    if (near > 15.0) break;
   }
   CloudDepths depths = cloudDepthsAt(uLightVolume, q, dither);
-  vec3 beyond = cloudPosition(p + uKeyDirection * done, uEarthRadiusM);
-  if (samples > 0) depths.toSun = near + cloudDepthsAt(uLightVolume, beyond, dither).toSun;
+  depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done, dither).toSun;
   float phase = mix(phases.x, phases.y, point.ice / point.extinction);
-  vec3 source = keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, uKeyDirection.z);
   vec2 shares = cloudSkyShares(depths);
-  return source + mix(uSkyLow, uSkyHigh, clamp(q.z / 10000.0, 0.0, 1.0)) * shares.x + uGroundLight * shares.y;
+  return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, uKeyDirection.z) +
+         mix(uSkyLow, uSkyHigh, clamp(q.z / 10000.0, 0.0, 1.0)) * shares.x + uGroundLight * shares.y;
 }
 
 // What a march carries along a ray.
@@ -128,7 +128,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     fine = max(fine, 2);
     float through = exp(-point.extinction * shortStep);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, detail, dither.y);
+    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, dir.z, detail, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
