@@ -60,7 +60,7 @@ vec3 keyLightAt(float heightM, vec3 p) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float dither) {
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float viewHeight, float dither) {
   // Towards the sun: first through the point's own density, then through samples of the large shapes at distances that grow
   // cubically, fine where shadows are sharp; then as the light volume says.
   float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
@@ -76,7 +76,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float 
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done, dither).toSun;
   float phase = mix(phases.x, phases.y, point.ice / point.extinction);
   vec2 shares = cloudSkyShares(depths);
-  return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, uKeyDirection.z) +
+  return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z) +
          mix(uSkyLow, uSkyHigh, clamp(q.z / 10000.0, 0.0, 1.0)) * shares.x + uGroundLight * shares.y;
 }
 
@@ -128,7 +128,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     fine = max(fine, 2);
     float through = exp(-point.extinction * shortStep);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, dir.z, detail, dither.y);
+    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, dir.z, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
