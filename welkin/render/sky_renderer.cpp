@@ -70,7 +70,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   const sky::SkyTables tables = sky::makeSkyTables(
       *state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
   const gpu::TextureOptions half{.format = gpu::Format::kRgba16F}, full{.format = gpu::Format::kRgba32F};
-  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full);
+  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full), keyLight(shading::keyLightTable(state), full);
   const gpu::Texture3D inscatter(tables.aerialInscatter, full), through(tables.aerialTransmittance, half);
   done("tables");
 
@@ -89,6 +89,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   impl_->clouds->bind(p);
   p.bind("uTransmittance", transmittance);
   p.bind("uSkyView", skyView);
+  p.bind("uKeyLight", keyLight);
   p.bind("uAerialInscatter", inscatter);
   p.bind("uAerialTransmittance", through);
   p.bind("uLightVolume", impl_->lightVolume.volume());

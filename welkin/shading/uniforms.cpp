@@ -13,6 +13,10 @@
 namespace welkin::shading {
 namespace {
 
+// Extent of the table of the clouds' light: up to the highest tops, and some 250 km of the earth's curve.
+constexpr float kKeyLightTopM = 18000.0f;
+constexpr float kKeyLightReach = 0.04f;
+
 std::string layerMember(std::size_t i, const char* member) {
   return "uLayers[" + std::to_string(i) + "]." + member;
 }
@@ -42,7 +46,8 @@ Uniforms skyUniforms(const scene::SkyState& state) {
   u.emplace_back("uEyeM", static_cast<float>(s.camera.eyeM));
   u.emplace_back("uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
   u.emplace_back("uKeyDirection", state.lights[0].direction);
-  u.emplace_back("uKeyIlluminance", state.lights[0].illuminance);
+  u.emplace_back("uKeyLightTopM", kKeyLightTopM);
+  u.emplace_back("uKeyLightReach", kKeyLightReach);
   u.emplace_back("uSkyLow", state.ambient.skyLow);
   u.emplace_back("uSkyHigh", state.ambient.skyHigh);
   u.emplace_back("uSkyOnGround", state.ambient.skyOnGround);
@@ -81,12 +86,27 @@ Uniforms skyUniforms(const scene::SkyState& state) {
   return u;
 }
 
+Image<float> keyLightTable(const scene::SkyState& state) {
+  constexpr int kHeights = 64, kSines = 16;
+  Image<float> table(kHeights, kSines, 3);
+  const sky::Light& key = state.lights[0];
+  for (int y = 0; y < kSines; ++y)
+    for (int x = 0; x < kHeights; ++x) {
+      const double height = kKeyLightTopM * (x + 0.5) / kHeights;
+      const double sine = key.direction.z + kKeyLightReach * (2.0 * (y + 0.5) / kSines - 1.0);
+      const glm::vec3 light =
+          key.illuminance * state.atmosphere->transmittanceToSpace(state.scene.place.altitudeM + height, sine);
+      for (int c = 0; c < 3; ++c) table.at(x, y, c) = light[c];
+    }
+  return table;
+}
+
 MarchSettings marchSettings(scene::Quality quality) {
   switch (quality) {
     case scene::Quality::kLow:
       return {.subframes = 3, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
     case scene::Quality::kMedium:
-      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 3};
+      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
     case scene::Quality::kHigh:
       return {.subframes = 16, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
     case scene::Quality::kUltra:

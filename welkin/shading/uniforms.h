@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "welkin/core/image.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/shading/shader_library.h"
 
@@ -27,6 +28,9 @@ Uniforms cloudUniforms(const scene::SkyState& state);
 
 // lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
 Uniforms skyUniforms(const scene::SkyState& state);
+
+// The light that reaches clouds through the air: RGB illuminance, lux, by height (columns) and the sine of the light's elevation (rows).
+Image<float> keyLightTable(const scene::SkyState& state);
 
 // How finely to march.
 struct MarchSettings {
