@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/testing/skies.h"
+
+#include "welkin/sky/ephemeris.h"
+
+namespace welkin::testing {
+namespace {
+
+scene::Scene smallScene(const UtcTime& time) {
+  scene::Scene s;
+  s.place = {kTestLatitudeDeg, 0.0, 0.0};
+  s.time = time;
+  s.camera.headingDeg = 0.0;
+  s.output.width = 32;
+  s.output.height = 18;
+  s.output.quality = scene::Quality::kLow;
+  return s;
+}
+
+}  // namespace
+
+scene::Scene clearScene(double sunElevationDeg) {
+  // From noon to midnight the sun only sinks.
+  const UtcTime noon = parseUtcTime("2026-06-21T12:05:00Z");
+  double early = 0.0, late = 12.0 * 3600.0;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (early + late);
+    const sky::Ephemeris e = sky::ephemeris(addSeconds(noon, middle), {kTestLatitudeDeg, 0.0, 0.0});
+    (e.sun.elevationDeg > sunElevationDeg ? early : late) = middle;
+  }
+  return smallScene(addSeconds(noon, early));
+}
+
+scene::Scene cloudyScene(double sunElevationDeg, std::initializer_list<weather::Genus> genera, double oktas) {
+  scene::Scene s = clearScene(sunElevationDeg);
+  for (const weather::Genus genus : genera) {
+    s.layers.push_back(weather::typicalLayer(genus, kTestLatitudeDeg));
+    s.layers.back().oktas = oktas;
+  }
+  return s;
+}
+
+scene::Scene moonlitScene() {
+  return smallScene(parseUtcTime("2026-12-24T00:30:00Z"));
+}
+scene::Scene moonlessScene() {
+  return smallScene(parseUtcTime("2026-12-09T00:30:00Z"));
+}
+
+scene::Scene sized(scene::Scene s, int width, int height) {
+  s.output.width = width;
+  s.output.height = height;
+  return s;
+}
+
+scene::Scene looking(scene::Scene s, double headingDeg, double pitchDeg, double fovDeg) {
+  s.camera.headingDeg = headingDeg;
+  s.camera.pitchDeg = pitchDeg;
+  s.camera.fovDeg = fovDeg;
+  return s;
+}
+
+scene::Scene projected(scene::Scene s, scene::Projection projection, int width, int height) {
+  s.camera.projection = projection;
+  return sized(s, width, height);
+}
+
+scene::Scene fromHeight(scene::Scene s, double eyeM) {
+  s.camera.eyeM = eyeM;
+  return s;
+}
+
+}  // namespace welkin::testing

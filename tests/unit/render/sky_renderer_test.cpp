@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole pictures, tiny: that they are the same every time, that no value in them is senseless, and that the
+// sky behaves as skies do.
+#include "welkin/render/sky_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "tests/testing/pictures.h"
+#include "tests/testing/skies.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::render {
+namespace {
+
+using namespace welkin::testing;
+using weather::Genus;
+
+// One renderer for all: it must serve any sky after any other.
+class Sky : public ::testing::Test {
+ protected:
+  static SkyRenderer& renderer() {
+    static SkyRenderer r({.debug = true});
+    return r;
+  }
+  static Image<float> drawn(const scene::Scene& s) {
+    return renderer().draw(scene::buildSky(s, 0.0)).luminance;
+  }
+  void TearDown() override {
+    for (const std::string& error : renderer().takeErrors()) ADD_FAILURE() << error;
+  }
+};
+
+TEST_F(Sky, TheSameStateIsDrawnTheSame) {
+  const scene::Scene s = cloudyScene(35.0, {Genus::kCumulus, Genus::kCirrus});
+  const scene::SkyState state = scene::buildSky(s, 0.0);
+  const Picture first = renderer().draw(state);
+  drawn(cloudyScene(5.0, {Genus::kStratus}, 8.0));  // another sky in between
+  const Picture second = renderer().draw(state);
+  EXPECT_EQ(first.luminance.data, second.luminance.data);
+  EXPECT_EQ(first.autoExposureEv, second.autoExposureEv);
+  SkyRenderer other;
+  EXPECT_EQ(first.luminance.data, other.draw(state).luminance.data);
+}
+
+// Any instant can be asked for with or without the instants before it.
+TEST_F(Sky, AnInstantDoesNotDependOnItsPast) {
+  const scene::Scene s = cloudyScene(35.0, {Genus::kStratocumulus, Genus::kCirrus});
+  const scene::SkyState start = scene::buildSky(s, 0.0);
+  const scene::SkyState between = scene::buildSky(s, 333.0, &start);
+  const scene::SkyState after = scene::buildSky(s, 700.0, &between);
+  const scene::SkyState direct = scene::buildSky(s, 700.0);
+  const Image<float> a = renderer().draw(after).luminance, b = renderer().draw(direct).luminance;
+  EXPECT_EQ(a.data, b.data);
+  EXPECT_NE(a.data, renderer().draw(start).luminance.data);
+}
+
+// Whole skies, so every direction of view. The eye and the time do not touch noise and cover, which take
+// long: they are kept.
+void expectSensible(SkyRenderer& renderer, scene::Scene s, const scene::SkyState& kept, const char* what) {
+  s = projected(s, scene::Projection::kEquirect, 16, 8);
+  const Image<float> picture = renderer.draw(scene::buildSky(s, 0.0, &kept)).luminance;
+  const long bad = firstBadValue(picture);
+  EXPECT_EQ(bad, -1) << what << ", eye at " << s.camera.eyeM << " m, " << formatUtcTime(s.time) << ": value "
+                     << (bad < 0 ? 0.0f : picture.data[static_cast<std::size_t>(bad)]) << " at " << bad;
+  EXPECT_GT(luminanceOf(meanOf(picture)), 1e-6) << what;
+}
+
+// Every kind of cloud from the ground and from within, between, and above; the sun high, low, gone.
+TEST_F(Sky, EveryGenusIsSensible) {
+  int i = 0;
+  for (const std::string_view name : kEnumNames<Genus>) {
+    const Genus genus = static_cast<Genus>(i);
+    // With a second layer above or below, so that there is a between.
+    scene::Scene s = cloudyScene(60.0, {genus, genus == Genus::kCirrus ? Genus::kCumulus : Genus::kCirrus});
+    const scene::SkyState kept = scene::buildSky(s, 0.0);
+    const double inside = 0.5 * (s.layers[0].baseM + s.layers[0].topM);
+    const double between =
+        0.5 * (std::min(s.layers[0].topM, s.layers[1].topM) + std::max(s.layers[0].baseM, s.layers[1].baseM));
+    const double eyes[] = {2.0, between, 12000.0, 20000.0};
+    const double suns[] = {60.0, 5.0, -12.0};
+    s.time = clearScene(suns[i % 3]).time;
+    expectSensible(renderer(), fromHeight(s, inside), kept, name.data());
+    expectSensible(renderer(), fromHeight(s, eyes[i % 4]), kept, name.data());
+    ++i;
+  }
+}
+
+TEST_F(Sky, EverySunIsSensible) {
+  scene::Scene s = cloudyScene(60.0, {Genus::kCumulus, Genus::kAltocumulus});
+  const scene::SkyState kept = scene::buildSky(s, 0.0);
+  for (const double sun : {60.0, 5.0, 0.0, -4.0, -12.0, -30.0})
+    for (const double eyeM : {2.0, 20000.0}) {
+      s.time = clearScene(sun).time;
+      expectSensible(renderer(), fromHeight(s, eyeM), kept, "sun");
+    }
+}
+
+TEST_F(Sky, StraightUpAndStraightDownAreSensible) {
+  const scene::Scene s = cloudyScene(60.0, {Genus::kCumulus});
+  for (const double pitch : {-90.0, 90.0})
+    EXPECT_EQ(firstBadValue(drawn(fromHeight(sized(looking(s, 290.0, pitch), 9, 9), 3000.0))), -1) << pitch;
+}
+
+TEST_F(Sky, PolesAndDateLineAreDrawnLikeAnyPlace) {
+  for (const scene::Place place :
+       {scene::Place{90.0, 0.0, 0.0}, scene::Place{-90.0, 180.0, 2800.0}, scene::Place{66.5, -180.0, 10.0}}) {
+    scene::Scene s = cloudyScene(20.0, {Genus::kStratocumulus});
+    s.place = place;
+    EXPECT_EQ(firstBadValue(drawn(projected(s, scene::Projection::kEquirect, 16, 8))), -1)
+        << place.latitudeDeg;
+  }
+}
+
+// --- how skies behave
+// ------------------------------------------------------------------------------------------------------------
+
+TEST_F(Sky, DeepensUpwards) {
+  // Away from the sun, which stands in the west.
+  const Image<float> picture = drawn(sized(looking(clearScene(45.0), 60.0, 45.0, 60.0), 24, 36));
+  const auto blueness = [&](int y0, int y1) {
+    const glm::vec3 c = meanOf(picture, y0, y1);
+    return c.z / c.x;
+  };
+  EXPECT_GT(blueness(0, 6), 1.3 * blueness(28, 34));
+  EXPECT_GT(luminanceOf(meanOf(picture, 28, 34)), luminanceOf(meanOf(picture, 0, 6)));
+}
+
+TEST_F(Sky, OvercastDimsTheGround) {
+  const auto ground = [&](const scene::Scene& s) {
+    return luminanceOf(meanOf(drawn(sized(looking(s, 90.0, -45.0), 8, 8))));
+  };
+  const double clear = ground(clearScene(50.0));
+  const double overcast = ground(cloudyScene(50.0, {Genus::kNimbostratus}, 8.0));
+  EXPECT_LT(overcast, 0.35 * clear);
+  EXPECT_GT(overcast, 0.01 * clear);
+}
+
+// The CIE overcast sky is three times brighter at the zenith than at the horizon; ours at least does not do
+// the opposite.
+TEST_F(Sky, ThickOvercastIsGreyAndNoBrighterAtTheHorizon) {
+  const Image<float> picture =
+      drawn(projected(cloudyScene(50.0, {Genus::kStratus}, 8.0), scene::Projection::kEquirect, 32, 32));
+  const glm::vec3 zenith = meanOf(picture, 0, 4), low = meanOf(picture, 13, 15);
+  EXPECT_GT(luminanceOf(zenith), 0.8 * luminanceOf(low));
+  EXPECT_NEAR(zenith.z / zenith.x, 1.0, 0.45);
+}
+
+TEST_F(Sky, TheMoonBrightensTheNight) {
+  for (const bool cloudy : {false, true}) {
+    const auto night = [&](scene::Scene s) {
+      if (cloudy) {
+        s.layers.push_back(weather::typicalLayer(Genus::kCumulus, kTestLatitudeDeg));
+        s.layers.back().oktas = 4.0;
+      }
+      return luminanceOf(meanOf(drawn(looking(s, 90.0, 30.0))));
+    };
+    const double moonlit = night(moonlitScene()), moonless = night(moonlessScene());
+    EXPECT_GT(moonlit, 5.0 * moonless) << cloudy;
+    EXPECT_GT(moonless, 1e-5) << cloudy;
+    EXPECT_LT(moonlit, 0.1) << cloudy;
+  }
+}
+
+TEST_F(Sky, ProgressGrowsToOneAndCanStopTheDrawing) {
+  const scene::SkyState state = scene::buildSky(clearScene(45.0), 0.0);
+  double last = 0.0;
+  renderer().draw(state, [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  });
+  EXPECT_DOUBLE_EQ(last, 1.0);
+  struct Stop {};
+  EXPECT_THROW(renderer().draw(state,
+                               [](double fraction) {
+                                 if (fraction > 0.3) throw Stop{};
+                               }),
+               Stop);
+  EXPECT_EQ(firstBadValue(renderer().draw(state).luminance), -1);  // and is as good as new
+}
+
+}  // namespace
+}  // namespace welkin::render
