@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One sub-frame of the whole picture: sky, discs, ground, and one march through all layers of cloud. Sub-frames differ in their
-// place within the pixel and along the ray; their sum, weighted by uWeight, converges to the still.
+// place within the pixel and along the ray; their mean converges to the still. Alpha counts them.
 
 #include "lib/projection.glsl"
 #include "lib/phase.glsl"
@@ -14,7 +14,6 @@
 uniform Projector uProjector;
 uniform vec2 uJitterPx;           // of this sub-frame within the pixel
 uniform vec2 uJitterStep;         // of this sub-frame along the ray and towards the sun, [0, 1)
-uniform float uWeight;
 
 layout(location = 0) out vec4 outColor;
 
@@ -26,7 +25,7 @@ void main() {
   vec3 dir;
   float pixelRad;
   if (!projectorDirection(uProjector, px + uJitterPx, dir, pixelRad)) {
-    outColor = vec4(0.0, 0.0, 0.0, uWeight);
+    outColor = vec4(0.0, 0.0, 0.0, 1.0);
     return;
   }
   // Two dithers that know nothing of each other, along the ray and towards the sun: related, they would draw contour lines.
@@ -40,5 +39,5 @@ void main() {
     aerial(dir, ray.depthM, inscatter, through);
     color += ray.luminance * through + inscatter * (1.0 - ray.transmittance);
   }
-  outColor = vec4(color * uWeight, uWeight);
+  outColor = vec4(color, 1.0);
 }

@@ -8,6 +8,7 @@
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/draw.h"
 #include "welkin/gpu/framebuffer.h"
+#include "welkin/render/accumulation.h"
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/display.h"
 #include "welkin/render/light_volume_pass.h"
@@ -25,6 +26,17 @@ glm::vec2 quasiRandom2(int i) {
 }
 float quasiRandom1(int i) {
   return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * (i + 1), 1.0));
+}
+
+// The whole picture in strips, a few to a sub-frame.
+std::vector<gpu::Tile> rowBands(int width, int height) {
+  constexpr int kBands = 4;
+  std::vector<gpu::Tile> bands;
+  for (int b = 0; b < kBands; ++b) {
+    const int y0 = height * b / kBands, y1 = height * (b + 1) / kBands;
+    if (y1 > y0) bands.push_back({0, y0, width, y1 - y0});
+  }
+  return bands;
 }
 
 }  // namespace
@@ -97,24 +109,27 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   const gpu::Texture2D sum(width, height, full);
   const gpu::Framebuffer target(sum);
   target.clear();
-  p.set("uWeight", 1.0f / static_cast<float>(settings.subframes));
+  // Sums of sub-frames, with their number in alpha. The first two cover the picture; the others only what these disagree about.
+  std::vector<gpu::Tile> tiles = rowBands(width, height);
+  Image<float> first;
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
     p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
-    // In bands of rows, so that progress is seen and Ctrl-C is heard.
-    constexpr int kBands = 8;
-    for (int b = 0; b < kBands; ++b) {
-      const int y0 = height * b / kBands, y1 = height * (b + 1) / kBands;
-      impl_->triangle.draw(p, target, {.tile = gpu::Tile{0, y0, width, y1 - y0}, .blend = gpu::Blend::kAdd});
-      if (progress) {
-        gpu::finish();
-        progress(static_cast<double>(i * kBands + b + 1) / (settings.subframes * kBands));
-      }
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+      impl_->triangle.draw(p, target, {.tile = tiles[t], .blend = gpu::Blend::kAdd});
+      if (!progress || (tiles.size() > 16 && t % 16 != 15 && t + 1 < tiles.size())) continue;
+      gpu::finish();  // so that progress is true and Ctrl-C is heard
+      progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
     }
+    if (i == 0) first = target.readPicture();
+    if (i == 1 && settings.subframes > 2) tiles = unfinishedTiles(first, target.readPicture(), settings.tolerance);
   }
   done("march");
 
-  picture.luminance = target.readPicture(0, 3);
+  const Image<float> sums = target.readPicture();
+  picture.luminance = Image<float>(width, height, 3);
+  for (std::size_t i = 0; i < sums.data.size() / 4; ++i)
+    for (std::size_t c = 0; c < 3; ++c) picture.luminance.data[3 * i + c] = sums.data[4 * i + c] / sums.data[4 * i + 3];
   picture.autoExposureEv = automaticExposureEv(picture.luminance);
   done("read back");
   return picture;

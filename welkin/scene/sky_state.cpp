@@ -44,8 +44,11 @@ AmbientLight ambientLight(const SkyState& s) {
   a.skyHigh =
       atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
   const float through = static_cast<float>(diffuseTransmittance(s.weather, *s.clouds));
-  // What falls on the clouds has not yet passed the haze beneath them.
-  const double topM = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().topM;
+  // What falls on the clouds has not yet passed the air beneath their tops: the highest that are thick enough
+  // to scatter it all.
+  double topM = 0.0;
+  for (const weather::Layer& layer : s.weather.layers)
+    if (layer.oktas >= 4.0 && layer.extinctionPerM * (layer.topM - layer.baseM) > 3.0) topM = layer.topM;
   glm::vec3 direct(0.0f), onClouds(0.0f);
   for (const sky::Light& light : s.lights) {
     direct += horizontalIlluminance(atmosphere, light, 0.0);
@@ -60,7 +63,8 @@ AmbientLight ambientLight(const SkyState& s) {
   const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;
   const bool beneath = !s.weather.layers.empty() && s.scene.camera.eyeM < lowestBase + 200.0;
   a.clearAir = beneath ? 1.0f - cover : 1.0f;
-  a.haze = 0.5f * (a.skyOnGround / pi + a.ground);
+  a.haze = 0.75f * a.skyOnGround / pi +
+           0.25f * a.ground;  // the sky fills most of what a droplet near the ground sees brightly
   return a;
 }
 

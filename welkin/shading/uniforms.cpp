@@ -104,13 +104,13 @@ Image<float> keyLightTable(const scene::SkyState& state) {
 MarchSettings marchSettings(scene::Quality quality) {
   switch (quality) {
     case scene::Quality::kLow:
-      return {.subframes = 3, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
+      return {.subframes = 3, .tolerance = 0.02f, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
     case scene::Quality::kMedium:
-      return {.subframes = 5, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
+      return {.subframes = 5, .tolerance = 0.01f, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
     case scene::Quality::kHigh:
-      return {.subframes = 16, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
+      return {.subframes = 16, .tolerance = 0.005f, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
     case scene::Quality::kUltra:
-      return {.subframes = 64, .stepNearM = 20.0f, .stepShare = 0.005f, .maxSteps = 800, .sunSamples = 5};
+      return {.subframes = 64, .tolerance = 0.002f, .stepNearM = 20.0f, .stepShare = 0.005f, .maxSteps = 800, .sunSamples = 5};
   }
   return {};
 }

@@ -34,7 +34,8 @@ Image<float> keyLightTable(const scene::SkyState& state);
 
 // How finely to march.
 struct MarchSettings {
-  int subframes = 8;         // accumulated into a still
+  int subframes = 8;         // accumulated into a still, at most
+  float tolerance = 0.008f;  // relative difference of the first two up to which a part of the picture has enough
   float stepNearM = 30.0f;   // smallest step, in cloud
   float stepShare = 0.008f;  // step in cloud as a share of the distance
   float stepLong = 8.0f;     // the longest step through clear air, in steps in cloud

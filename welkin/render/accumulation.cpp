@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/accumulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/parallel.h"
+
+namespace welkin::render {
+namespace {
+
+constexpr int kTilePx = 32;
+
+float luminanceOf(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+
+bool isUnfinished(const Image<float>& first, const Image<float>& both, int x0, int y0, float tolerance) {
+  const int x1 = std::min(x0 + kTilePx, first.width), y1 = std::min(y0 + kTilePx, first.height);
+  float sum = 0.0f, largest = 0.0f;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const float a = luminanceOf(&first.data[first.index(x, y)]);
+      const float total = luminanceOf(&both.data[both.index(x, y)]);
+      const float difference = std::abs(total - 2.0f * a) / std::max(total, 1e-12f);
+      sum += difference;
+      largest = std::max(largest, difference);
+    }
+  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > 4.0f * tolerance;
+}
+
+}  // namespace
+
+std::vector<gpu::Tile> unfinishedTiles(const Image<float>& first, const Image<float>& both, float tolerance) {
+  const int columns = (first.width + kTilePx - 1) / kTilePx, rows = (first.height + kTilePx - 1) / kTilePx;
+  std::vector<char> unfinished(static_cast<std::size_t>(columns) * rows);
+  parallelFor(unfinished.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      unfinished[i] = isUnfinished(first, both, static_cast<int>(i) % columns * kTilePx,
+                                   static_cast<int>(i) / columns * kTilePx, tolerance);
+  });
+
+  std::vector<gpu::Tile> tiles;
+  for (int row = 0; row < rows; ++row) {
+    const int top = row * kTilePx, bottom = std::min(top + kTilePx, first.height);
+    for (int column = 0; column < columns; ++column) {
+      if (!unfinished[static_cast<std::size_t>(row) * columns + column]) continue;
+      const int left = column * kTilePx;
+      while (column + 1 < columns && unfinished[static_cast<std::size_t>(row) * columns + column + 1]) ++column;
+      tiles.push_back({left, first.height - bottom, std::min((column + 1) * kTilePx, first.width) - left, bottom - top});
+    }
+  }
+  return tiles;
+}
+
+}  // namespace welkin::render
