@@ -66,12 +66,17 @@ inline Tap tap(float u, int n, Wrap wrap) {
     const int i = static_cast<int>(inside);
     return {i, i + 1 < n ? i + 1 : i, inside - static_cast<float>(i)};
   }
-  const float f = std::floor(x);
-  const float period = std::floor(f / static_cast<float>(n));
-  int i = static_cast<int>(f - period * static_cast<float>(n));
-  if (i >= n) i -= n;
-  if (i < 0) i += n;
-  return {i, i + 1 == n ? 0 : i + 1, x - f};
+  // Rounded towards zero, then down: no floor() here either. |x| < 2^31.
+  int i = static_cast<int>(x);
+  i -= static_cast<float>(i) > x;
+  const float w = x - static_cast<float>(i);
+  if ((n & (n - 1)) == 0) {  // a power of two: the usual size
+    i &= n - 1;
+  } else {
+    i %= n;
+    if (i < 0) i += n;
+  }
+  return {i, i + 1 == n ? 0 : i + 1, w};
 }
 inline vec4 load(const float* p, int channels) {
   vec4 v(0.0f, 0.0f, 0.0f, 1.0f);

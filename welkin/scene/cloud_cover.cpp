@@ -15,11 +15,11 @@ namespace welkin::scene {
 namespace {
 
 constexpr double kOktas = 8.0;
-constexpr field::CoverView kCalibrationView{.directions = 1500};
-constexpr field::CoverView kReportView{.directions = 4000};  // other directions than those of the calibration
+constexpr field::CoverView kCalibrationView{.directions = 1000};
+constexpr field::CoverView kReportView{.directions = 3000};  // other directions than those of the calibration
 
 constexpr int kPatterns = 5;             // places in a layer's pattern that are tried
-constexpr double kCloseOktas = 0.15;     // a union as close as this will do
+constexpr double kCloseOktas = 0.2;      // a union as close as this will do
 constexpr double kMostExtraOktas = 0.2;  // by which a layer's own cover may differ for the sake of the union
 constexpr double kLeastOpenSky = 0.02;   // below which what lies above hardly matters
 
@@ -42,40 +42,9 @@ struct Trial {
   double offOktas = 0.0;        // their cover, less what it should be
 };
 
-// Gives one layer its place above those already settled.
-class LayerSettler {
- public:
-  // `beneath`: optical depths of the layers below. `together`: fraction that is to be covered by those and
-  // this one.
-  LayerSettler(const weather::Layer& layer, std::shared_ptr<const field::CloudNoise> noise,
-               double groundAltitudeM, const std::vector<float>& beneath, double together)
-      : layer_(layer),
-        noise_(std::move(noise)),
-        groundAltitudeM_(groundAltitudeM),
-        beneath_(beneath),
-        together_(together) {}
-
-  // The layer in the pattern of `seed`, covering by itself what it should and `extraOktas` more.
-  Trial tried(std::uint64_t seed, double extraOktas) const {
-    const double fraction = std::clamp((layer_.oktas + extraOktas) / kOktas, 0.0, 1.0);
-    const field::CloudField start(noise_, {shapeOf(layer_, seed, 0.0)}, groundAltitudeM_);
-    const field::CloudLayer c = field::calibrated(start, 0, fraction, kCalibrationView);
-    Trial trial;
-    trial.layer = {seed, c.threshold, c.extinction};
-    trial.together = sumOf(
-        beneath_,
-        field::layerOpticalDepths(field::CloudField(noise_, {c}, groundAltitudeM_), kCalibrationView, 0));
-    trial.offOktas = kOktas * (field::coverOf(trial.together) - together_);
-    return trial;
-  }
-
- private:
-  const weather::Layer& layer_;
-  std::shared_ptr<const field::CloudNoise> noise_;
-  double groundAltitudeM_;
-  const std::vector<float>& beneath_;
-  double together_;
-};
+void keepCloser(Trial& best, Trial other) {
+  if (std::abs(other.offOktas) < std::abs(best.offOktas)) best = std::move(other);
+}
 
 }  // namespace
 
@@ -90,19 +59,27 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
   std::vector<float> beneath(kCalibrationView.directions, 0.0f);
   double clear = 1.0;  // the share of the sky that random overlap leaves
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    clear *= 1.0 - weather.layers[i].oktas / kOktas;
+    const weather::Layer& layer = weather.layers[i];
+    clear *= 1.0 - layer.oktas / kOktas;
+    // The layer in the pattern of `seed`, covering by itself what it should and `extraOktas` more.
+    auto tried = [&](std::uint64_t seed, double extraOktas) {
+      const double fraction = std::clamp((layer.oktas + extraOktas) / kOktas, 0.0, 1.0);
+      const field::CloudField start(noise, {shapeOf(layer, seed, 0.0)}, scene.place.altitudeM);
+      const field::CloudLayer c = field::calibrated(start, 0, fraction, kCalibrationView);
+      const field::CloudField settled(noise, {c}, scene.place.altitudeM);
+      std::vector<float> together = sumOf(beneath, field::layerOpticalDepths(settled, kCalibrationView, 0));
+      const double offOktas = kOktas * (field::coverOf(together) - (1.0 - clear));
+      return Trial{{seed, c.threshold, c.extinction}, std::move(together), offOktas};
+    };
+
+    Trial best = tried(patternSeed(scene, i, 0), 0.0);
     const double open = 1.0 - field::coverOf(beneath);  // where the layer can be seen
-    const LayerSettler settler(weather.layers[i], noise, scene.place.altitudeM, beneath, 1.0 - clear);
-    Trial best = settler.tried(patternSeed(scene, i, 0), 0.0);
     if (i > 0 && open > kLeastOpenSky) {
-      for (int k = 1; k < kPatterns && std::abs(best.offOktas) > kCloseOktas; ++k) {
-        Trial other = settler.tried(patternSeed(scene, i, k), 0.0);
-        if (std::abs(other.offOktas) < std::abs(best.offOktas)) best = std::move(other);
-      }
+      for (int k = 1; k < kPatterns && std::abs(best.offOktas) > kCloseOktas; ++k)
+        keepCloser(best, tried(patternSeed(scene, i, k), 0.0));
       if (std::abs(best.offOktas) > kCloseOktas) {
         const double extra = std::clamp(-best.offOktas / open, -kMostExtraOktas, kMostExtraOktas);
-        Trial other = settler.tried(best.layer.seed, extra);
-        if (std::abs(other.offOktas) < std::abs(best.offOktas)) best = std::move(other);
+        keepCloser(best, tried(best.layer.seed, extra));
       }
     }
     result.push_back(best.layer);

@@ -6,6 +6,7 @@
 // time. The result is a pure function of (scene, weather), whatever the instant and the eye.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct LayerCalibration {
   std::uint64_t seed = 0;   // of the layer's pattern
   float threshold = 0.0f;   // CloudLayer's
   float extinction = 0.0f;  // 1/m; more than the weather's where that would be too thin to count as cloud
+
+  bool operator==(const LayerCalibration&) const = default;
 };
 
 // For each layer of the weather, so that each covers by itself what it should and all of them together what

