@@ -82,7 +82,8 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   const sky::SkyTables tables = sky::makeSkyTables(
       *state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
   const gpu::TextureOptions half{.format = gpu::Format::kRgba16F}, full{.format = gpu::Format::kRgba32F};
-  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full), keyLight(shading::keyLightTable(state), full);
+  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full),
+      keyLight(shading::keyLightTable(state), full);
   const gpu::Texture3D inscatter(tables.aerialInscatter, full), through(tables.aerialTransmittance, half);
   done("tables");
 
@@ -109,7 +110,8 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   const gpu::Texture2D sum(width, height, full);
   const gpu::Framebuffer target(sum);
   target.clear();
-  // Sums of sub-frames, with their number in alpha. The first two cover the picture; the others only what these disagree about.
+  // Sums of sub-frames, with their number in alpha. The first two cover the picture; the others only what
+  // these disagree about.
   std::vector<gpu::Tile> tiles = rowBands(width, height);
   Image<float> first;
   for (int i = 0; i < settings.subframes; ++i) {
@@ -122,14 +124,13 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
       progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
     }
     if (i == 0) first = target.readPicture();
-    if (i == 1 && settings.subframes > 2) tiles = unfinishedTiles(first, target.readPicture(), settings.tolerance);
+    if (i == 1 && settings.subframes > 2)
+      tiles = unfinishedTiles(first, target.readPicture(), settings.tolerance);
   }
+  if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
   done("march");
 
-  const Image<float> sums = target.readPicture();
-  picture.luminance = Image<float>(width, height, 3);
-  for (std::size_t i = 0; i < sums.data.size() / 4; ++i)
-    for (std::size_t c = 0; c < 3; ++c) picture.luminance.data[3 * i + c] = sums.data[4 * i + c] / sums.data[4 * i + 3];
+  picture.luminance = resolve(target.readPicture(), settings.noise);
   picture.autoExposureEv = automaticExposureEv(picture.luminance);
   done("read back");
   return picture;

@@ -74,13 +74,13 @@ TEST_F(Sky, EveryGenusIsSensible) {
   int i = 0;
   for (const std::string_view name : kEnumNames<Genus>) {
     const Genus genus = static_cast<Genus>(i);
-    // With a second layer above or below, so that there is a between.
-    scene::Scene s = cloudyScene(60.0, {genus, genus == Genus::kCirrus ? Genus::kCumulus : Genus::kCirrus});
+    // Once with a second layer far above, so that there is a between; each layer costs its calibration.
+    scene::Scene s =
+        genus == Genus::kCumulus ? cloudyScene(60.0, {genus, Genus::kCirrus}) : cloudyScene(60.0, {genus});
     const scene::SkyState kept = scene::buildSky(s, 0.0);
     const double inside = 0.5 * (s.layers[0].baseM + s.layers[0].topM);
-    const double between =
-        0.5 * (std::min(s.layers[0].topM, s.layers[1].topM) + std::max(s.layers[0].baseM, s.layers[1].baseM));
-    const double eyes[] = {2.0, between, 12000.0, 20000.0};
+    const double between = s.layers.front().topM + 1000.0;
+    const double eyes[] = {between, 2.0, 12000.0, 20000.0};
     const double suns[] = {60.0, 5.0, -12.0};
     s.time = clearScene(suns[i % 3]).time;
     expectSensible(renderer(), fromHeight(s, inside), kept, name.data());
@@ -94,6 +94,7 @@ TEST_F(Sky, EverySunIsSensible) {
   const scene::SkyState kept = scene::buildSky(s, 0.0);
   for (const double sun : {60.0, 5.0, 0.0, -4.0, -12.0, -30.0})
     for (const double eyeM : {2.0, 20000.0}) {
+      if (eyeM > 2.0 && sun > 0.0) continue;  // by day the genera see to that
       s.time = clearScene(sun).time;
       expectSensible(renderer(), fromHeight(s, eyeM), kept, "sun");
     }
