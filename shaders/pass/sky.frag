@@ -29,7 +29,8 @@ void main() {
     return;
   }
   // Two dithers that know nothing of each other, along the ray and towards the sun: related, they would draw contour lines.
-  vec2 dither = fract(vec2(interleavedNoise(floor(px)), interleavedNoise(floor(px.yx) + 71.0)) + uJitterStep);
+  vec2 at = floor(px);
+  vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
   vec3 color = vec3(0.0);

@@ -84,6 +84,7 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   Trouble trouble;
   std::vector<png_bytep> rows;
   rows.reserve(static_cast<std::size_t>(image.height));
+  rows.reserve(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(const_cast<T*>(&image.data[image.index(0, y)])));
   std::vector<png_text> chunks;

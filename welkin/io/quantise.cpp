@@ -57,7 +57,7 @@ Image<std::uint16_t> quantise16(const Image<float>& image) {
   requireFinite(image);
   Image<std::uint16_t> out(image.width, image.height, image.channels);
   for (std::size_t i = 0; i < image.data.size(); ++i)
-    out.data[i] = static_cast<std::uint16_t>(std::clamp(image.data[i], 0.0f, 1.0f) * 65535.0f + 0.5f);
+    out.data[i] = static_cast<std::uint16_t>(std::lround(std::clamp(image.data[i], 0.0f, 1.0f) * 65535.0f));
   return out;
 }
 

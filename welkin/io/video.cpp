@@ -23,8 +23,6 @@
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
 
-extern char** environ;
-
 namespace welkin::io {
 namespace {
 
@@ -59,20 +57,19 @@ std::string shortest(double x) {
 
 std::vector<std::string> ffmpegArguments(const VideoSettings& settings, VideoFormat format,
                                          const std::string& out) {
-  std::vector<std::string> a = {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",
-                                // what comes: raw pictures on standard input
-                                "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-                                std::to_string(settings.width) + "x" + std::to_string(settings.height), "-r",
-                                shortest(settings.fps), "-i", "pipe:0", "-an",
-                                // to BT.709; without the flags swscale takes short cuts that shift colours
-                                "-vf",
-                                "scale=out_color_matrix=bt709:out_range=tv:"
-                                "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp+bitexact",
-                                "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709",
-                                "-color_trc", "bt709", "-color_range", "tv",
-                                // no versions, dates or dependence on the machine in the file
-                                "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact",
-                                "-threads", "4"};
+  // To BT.709; without the flags swscale takes short cuts that shift colours.
+  static constexpr const char* kToVideo =
+      "scale=out_color_matrix=bt709:out_range=tv:"
+      "flags=bicubic+accurate_rnd+full_chroma_int+full_chroma_inp+bitexact";
+  std::vector<std::string> a = {
+      "ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",
+      // what comes: raw pictures on standard input
+      "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
+      std::to_string(settings.width) + "x" + std::to_string(settings.height), "-r", shortest(settings.fps),
+      "-i", "pipe:0", "-an", "-vf", kToVideo, "-pix_fmt", "yuv420p", "-colorspace", "bt709",
+      "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
+      // no versions, dates or dependence on the machine in the file
+      "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-threads", "4"};
   const auto add = [&](std::initializer_list<const char*> more) {
     a.insert(a.end(), more.begin(), more.end());
   };
@@ -88,7 +85,7 @@ std::vector<std::string> ffmpegArguments(const VideoSettings& settings, VideoFor
 // The last few lines of a stream that has been written to its end.
 std::string lastLines(std::FILE* file) {
   constexpr std::size_t kLines = 4;
-  std::rewind(file);
+  if (std::fseek(file, 0, SEEK_SET) != 0) return {};
   std::deque<std::string> lines(1);
   for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
     if (c != '\n') {
@@ -181,6 +178,7 @@ void VideoWriter::Impl::start(VideoFormat format) {
 
   std::vector<std::string> arguments = ffmpegArguments(settings, format, file.temporaryPath().string());
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const int error = posix_spawnp(&process, "ffmpeg", &actions, &attributes, argv.data(), environ);

@@ -10,8 +10,11 @@ namespace welkin::render {
 namespace {
 
 constexpr int kTilePx = 32;
+constexpr int kResolveRadius = 2;
 
-float luminanceOf(const float* rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+float luminanceOf(const float* rgb) {
+  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
 
 bool isUnfinished(const Image<float>& first, const Image<float>& both, int x0, int y0, float tolerance) {
   const int x1 = std::min(x0 + kTilePx, first.width), y1 = std::min(y0 + kTilePx, first.height);
@@ -44,11 +47,43 @@ std::vector<gpu::Tile> unfinishedTiles(const Image<float>& first, const Image<fl
     for (int column = 0; column < columns; ++column) {
       if (!unfinished[static_cast<std::size_t>(row) * columns + column]) continue;
       const int left = column * kTilePx;
-      while (column + 1 < columns && unfinished[static_cast<std::size_t>(row) * columns + column + 1]) ++column;
-      tiles.push_back({left, first.height - bottom, std::min((column + 1) * kTilePx, first.width) - left, bottom - top});
+      while (column + 1 < columns && unfinished[static_cast<std::size_t>(row) * columns + column + 1])
+        ++column;
+      tiles.push_back(
+          {left, first.height - bottom, std::min((column + 1) * kTilePx, first.width) - left, bottom - top});
     }
   }
   return tiles;
+}
+
+Image<float> resolve(const Image<float>& sums, float noise) {
+  const int width = sums.width, height = sums.height;
+  Image<float> mean(width, height, 3), picture(width, height, 3);
+  parallelFor(static_cast<std::size_t>(width) * height, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < 3; ++c) mean.data[3 * i + c] = sums.data[4 * i + c] / sums.data[4 * i + 3];
+  });
+  const float reach = 1.0f / (3.0f * noise);
+  parallelFor(height, 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < width; ++x) {
+        const float* centre = &mean.data[mean.index(x, y)];
+        const float own = luminanceOf(centre);
+        float rgb[3] = {0.0f, 0.0f, 0.0f}, weights = 0.0f;
+        for (int v = std::max(y - kResolveRadius, 0); v <= std::min(y + kResolveRadius, height - 1); ++v)
+          for (int u = std::max(x - kResolveRadius, 0); u <= std::min(x + kResolveRadius, width - 1); ++u) {
+            const float* p = &mean.data[mean.index(u, v)];
+            const float other = luminanceOf(p);
+            const float d = (other - own) / std::max(other + own, 1e-12f) * reach;
+            const float near = std::max(1.0f - d * d, 0.0f);
+            const float w = near * near;
+            for (int c = 0; c < 3; ++c) rgb[c] += w * p[c];
+            weights += w;
+          }
+        for (int c = 0; c < 3; ++c) picture.at(x, y, c) = rgb[c] / weights;
+      }
+  });
+  return picture;
 }
 
 }  // namespace welkin::render

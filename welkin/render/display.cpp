@@ -47,6 +47,25 @@ float encode(float x) {
 // setting of cameras. The primaries' own white (D65) is bluer, and sunlit clouds would look cream.
 const float kWhiteBalance[3] = {1.0f / 1.12f, 1.0f, 1.0f / 0.90f};
 
+// What rods see: scotopic luminance from X, Y and Z (G. W. Larson, H. Rushmeier and C. Piatko 1997, "A
+// Visibility Matching Tone Reproduction Operator for High Dynamic Range Scenes"), in the blue-grey of moonlit
+// nights that H. W. Jensen et al. 2000, "Night Rendering", measured in paintings (x = y = 0.25). `rgb` is
+// linear Rec. 709.
+void towardsNightVision(float* rgb, float share) {
+  const float x = 0.4124f * rgb[0] + 0.3576f * rgb[1] + 0.1805f * rgb[2];
+  const float y = luminanceOf(rgb);
+  const float z = 0.0193f * rgb[0] + 0.1192f * rgb[1] + 0.9505f * rgb[2];
+  const float scotopic = std::max(0.4f * y * (1.33f * (1.0f + (y + z) / std::max(x, 1e-12f)) - 1.68f), 0.0f);
+  constexpr float kBlueGrey[3] = {0.77f, 0.97f, 1.76f};  // of luminance 1 at x = y = 0.25
+  for (int c = 0; c < 3; ++c) rgb[c] += share * (scotopic * kBlueGrey[c] - rgb[c]);
+}
+
+// How much of it: none from 3 cd/m2 up, three quarters below 0.003.
+float nightShare(double exposureEv) {
+  const double adaptation = 0.1 * whiteLuminance(exposureEv);
+  return static_cast<float>(0.75 * std::clamp((std::log10(3.0) - std::log10(adaptation)) / 3.0, 0.0, 1.0));
+}
+
 }  // namespace
 
 double automaticExposureEv(const Image<float>& luminance) {
@@ -80,6 +99,7 @@ double automaticExposureEv(const Image<float>& luminance) {
 Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
   Image<float> out(luminance.width, luminance.height, 3);
   const float scale = static_cast<float>(1.0 / whiteLuminance(exposureEv));
+  const float night = nightShare(exposureEv);
   parallelFor(luminance.height, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (int x = 0; x < luminance.width; ++x) {
@@ -87,6 +107,7 @@ Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
         float* o = &out.data[out.index(x, static_cast<int>(y))];
         float rgb[3];
         for (int c = 0; c < 3; ++c) rgb[c] = inRange(in[c] * scale * kWhiteBalance[c]);
+        if (night > 0.0f) towardsNightVision(rgb, night);
         // Colour is spread a little about the luminance, as every camera does: three primaries see skies
         // paler than an eye.
         const float grey = luminanceOf(rgb);

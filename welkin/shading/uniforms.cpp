@@ -94,8 +94,8 @@ Image<float> keyLightTable(const scene::SkyState& state) {
     for (int x = 0; x < kHeights; ++x) {
       const double height = kKeyLightTopM * (x + 0.5) / kHeights;
       const double sine = key.direction.z + kKeyLightReach * (2.0 * (y + 0.5) / kSines - 1.0);
-      const glm::vec3 light =
-          key.illuminance * state.atmosphere->transmittanceToSpace(state.scene.place.altitudeM + height, sine);
+      const glm::vec3 light = key.illuminance * state.atmosphere->transmittanceToSpace(
+                                                    state.scene.place.altitudeM + height, sine);
       for (int c = 0; c < 3; ++c) table.at(x, y, c) = light[c];
     }
   return table;
@@ -104,13 +104,37 @@ Image<float> keyLightTable(const scene::SkyState& state) {
 MarchSettings marchSettings(scene::Quality quality) {
   switch (quality) {
     case scene::Quality::kLow:
-      return {.subframes = 3, .tolerance = 0.02f, .stepNearM = 55.0f, .stepShare = 0.015f, .maxSteps = 160, .sunSamples = 2};
+      return {.subframes = 3,
+              .tolerance = 0.02f,
+              .noise = 0.04f,
+              .stepNearM = 55.0f,
+              .stepShare = 0.015f,
+              .maxSteps = 160,
+              .sunSamples = 2};
     case scene::Quality::kMedium:
-      return {.subframes = 5, .tolerance = 0.01f, .stepNearM = 40.0f, .stepShare = 0.011f, .maxSteps = 240, .sunSamples = 2};
+      return {.subframes = 4,
+              .tolerance = 0.012f,
+              .noise = 0.04f,
+              .stepNearM = 38.0f,
+              .stepShare = 0.010f,
+              .maxSteps = 240,
+              .sunSamples = 2};
     case scene::Quality::kHigh:
-      return {.subframes = 16, .tolerance = 0.005f, .stepNearM = 30.0f, .stepShare = 0.008f, .maxSteps = 400, .sunSamples = 3};
+      return {.subframes = 16,
+              .tolerance = 0.005f,
+              .noise = 0.01f,
+              .stepNearM = 30.0f,
+              .stepShare = 0.008f,
+              .maxSteps = 400,
+              .sunSamples = 3};
     case scene::Quality::kUltra:
-      return {.subframes = 64, .tolerance = 0.002f, .stepNearM = 20.0f, .stepShare = 0.005f, .maxSteps = 800, .sunSamples = 5};
+      return {.subframes = 64,
+              .tolerance = 0.002f,
+              .noise = 0.004f,
+              .stepNearM = 20.0f,
+              .stepShare = 0.005f,
+              .maxSteps = 800,
+              .sunSamples = 5};
   }
   return {};
 }

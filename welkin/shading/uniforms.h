@@ -29,16 +29,19 @@ Uniforms cloudUniforms(const scene::SkyState& state);
 // lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
 Uniforms skyUniforms(const scene::SkyState& state);
 
-// The light that reaches clouds through the air: RGB illuminance, lux, by height (columns) and the sine of the light's elevation (rows).
+// The light that reaches clouds through the air: RGB illuminance, lux, by height (columns) and the sine of
+// the light's elevation (rows).
 Image<float> keyLightTable(const scene::SkyState& state);
 
 // How finely to march.
 struct MarchSettings {
-  int subframes = 8;         // accumulated into a still, at most
-  float tolerance = 0.008f;  // relative difference of the first two up to which a part of the picture has enough
+  int subframes = 8;  // accumulated into a still, at most
+  float tolerance =
+      0.008f;           // relative difference of the first two up to which a part of the picture has enough
+  float noise = 0.02f;  // relative, that the sub-frames leave and the resolve takes out
   float stepNearM = 30.0f;   // smallest step, in cloud
   float stepShare = 0.008f;  // step in cloud as a share of the distance
-  float stepLong = 8.0f;     // the longest step through clear air, in steps in cloud
+  float stepLong = 30.0f;    // the longest step through clear air, in steps in cloud
   int maxSteps = 300;
   int sunSamples = 4;  // density samples towards the sun before the light volume takes over
 };

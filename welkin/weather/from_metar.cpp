@@ -247,6 +247,7 @@ double Builder::depthM(const Layer& layer, MetarCover cover, bool towering) cons
 void Builder::addClouds() {
   const std::vector<Reported> reported = settleBases();
   std::vector<MetarCover> covers;
+  covers.reserve(reported.size());
   for (const Reported& r : reported) covers.push_back(r.cover);
   const CoverStack stack = stackCover(covers);
   weather_.requestedOktas = stack.totalOktas;
