@@ -9,8 +9,10 @@
 #include <fstream>
 
 #include "welkin/core/error.h"
+#include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/program.h"
+#include "welkin/shading/uniforms.h"
 
 namespace welkin::shading {
 namespace {
@@ -148,6 +150,21 @@ TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
   }
 }
 
+// So many layers, in bands of three.
+ShaderDefines definesOfLayers(int count) {
+  LightVolumeLayout layout;
+  for (int i = 0; i < count; ++i) {
+    if (i % 3 == 0) {
+      const float baseM = 1000.0f * static_cast<float>(i);
+      layout.bands.push_back({baseM, baseM + 500.0f, i, i + 2, {}});
+    }
+    layout.bands.back().layers.push_back(i);
+  }
+  ShaderDefines defines = marchDefines(layout, 1200.0);
+  defines.push_back({"WELKIN_BAND", "0"});
+  return defines;
+}
+
 // Every entry point compiles for the desktop, and all but compute for the web as well, where drivers of
 // desktops are laxer; with no layer of cloud, with one and with the most there are.
 TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
@@ -158,9 +175,10 @@ TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
     const ShaderSource nothing{
         std::string(es ? "#version 300 es" : "#version 330 core") + "\nvoid main() {}\n", {"-"}};
     for (const std::string& name : shaderNames())
-      for (const char* layers : {"0", "1", "8"}) {
-        SCOPED_TRACE(name + " with " + layers + " layers" + (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
-        const ShaderDefine defines[] = {{"WELKIN_LAYERS", layers}};
+      for (const int layers : {0, 1, field::kMaxLayers}) {
+        SCOPED_TRACE(name + " with " + std::to_string(layers) + " layers" +
+                     (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
+        const ShaderDefines defines = definesOfLayers(layers);
         if (name.ends_with(".frag")) {
           EXPECT_NO_THROW(gpu::Program::graphics(triangle, assembleShader(name, dialect, defines)));
         } else if (name.ends_with(".vert")) {
