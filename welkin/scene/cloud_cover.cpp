@@ -54,7 +54,7 @@ void keepCloser(Trial& best, Trial other) {
 // are tried until the union comes close; what then is left over is made up by a little more or less of the
 // layer.
 std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
-                                              std::shared_ptr<const field::CloudNoise> noise) {
+                                              const std::shared_ptr<const field::CloudNoise>& noise) {
   std::vector<LayerCalibration> result;
   std::vector<float> beneath(kCalibrationView.directions, 0.0f);
   double clear = 1.0;  // the share of the sky that random overlap leaves

@@ -38,7 +38,7 @@ struct LayerCalibration {
 // For each layer of the weather, so that each covers by itself what it should and all of them together what
 // they should by random overlap. `noise` is that of the scene's seed.
 std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
-                                              std::shared_ptr<const field::CloudNoise> noise);
+                                              const std::shared_ptr<const field::CloudNoise>& noise);
 
 // The clouds `secondsAfter` the scene's time.
 std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weather::Weather& weather,
