@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets C++ compile the files of shaders/lib, so that each formula is written once and runs on CPU and GPU alike.
+// Lets C++ compile the files of shaders/lib, so that each formula is written once and runs on CPU and GPU
+// alike.
 //
-// The shared subset: float literals with an f suffix; functions marked WELKIN_FN; out parameters as WELKIN_OUT(type) and
-// WELKIN_INOUT(type); constants as WELKIN_CONST float kName = ...; no swizzles (write p.x, vec2(p.x, p.y), vec3(v4)); no arrays of
-// opaque types; textures are read with textureLod(s, uv, 0.0f) only; structs of float, int, vec2, vec3, vec4.
-// The GLSL side of the same macros stands in shaders/lib/prelude.glsl.
+// The shared subset: float literals with an f suffix; functions marked WELKIN_FN; out parameters as
+// WELKIN_OUT(type) and WELKIN_INOUT(type); constants as WELKIN_CONST float kName = ...; no swizzles (write
+// p.x, vec2(p.x, p.y), vec3(v4)); no arrays of opaque types; textures are read with textureLod(s, uv, 0.0f)
+// only; structs of float, int, vec2, vec3, vec4. The GLSL side of the same macros stands in
+// shaders/lib/prelude.glsl.
 //
 // Include such a file once in a .cpp:
 //   namespace { using namespace welkin::glsl;
@@ -32,17 +34,23 @@
 
 namespace welkin::glsl {
 
-using glm::ivec2, glm::ivec3, glm::vec2, glm::vec3, glm::vec4, glm::mat3;
-using glm::clamp, glm::cross, glm::dot, glm::exp, glm::exp2, glm::floor, glm::fract, glm::length, glm::log, glm::log2;
-using glm::max, glm::min, glm::mix, glm::mod, glm::normalize, glm::pow, glm::sign, glm::smoothstep, glm::sqrt, glm::step;
 using glm::abs, glm::acos, glm::asin, glm::cos, glm::sin, glm::tan, glm::inversesqrt, glm::reflect;
-inline float atan(float y, float x) { return std::atan2(y, x); }
-inline float atan(float x) { return std::atan(x); }
+using glm::clamp, glm::cross, glm::dot, glm::exp, glm::exp2, glm::floor, glm::fract, glm::length, glm::log,
+    glm::log2;
+using glm::ivec2, glm::ivec3, glm::vec2, glm::vec3, glm::vec4, glm::mat3;
+using glm::max, glm::min, glm::mix, glm::mod, glm::normalize, glm::pow, glm::sign, glm::smoothstep, glm::sqrt,
+    glm::step;
+inline float atan(float y, float x) {
+  return std::atan2(y, x);
+}
+inline float atan(float x) {
+  return std::atan(x);
+}
 
 enum class Wrap { kRepeat, kClamp };
 
-// A texture of 1 to 4 float channels, read as GL does with LINEAR filtering: texel centres at (i + 0.5) / n; missing
-// channels read 0, missing alpha 1. Refers to the picture; does not own it.
+// A texture of 1 to 4 float channels, read as GL does with LINEAR filtering: texel centres at (i + 0.5) / n;
+// missing channels read 0, missing alpha 1. Refers to the picture; does not own it.
 struct sampler2D {
   const Image<float>* image = nullptr;
   Wrap wrapX = Wrap::kClamp, wrapY = Wrap::kClamp;
