@@ -123,6 +123,7 @@ Volume<float> billowVolume(std::uint64_t seed, int n, const Fractal& fractal, fl
   Volume<float> volume(n, n, n, 1);
   const Perlin perlin(hashOf(seed, 1));
   std::vector<Cellular> cells;
+  cells.reserve(static_cast<std::size_t>(fractal.octaves));
   for (int o = 0; o < fractal.octaves; ++o)
     cells.emplace_back(hashOf(seed, 2, o), glm::ivec3(frequencyOf(fractal, o)));
   parallelFor(static_cast<std::size_t>(n) * n, n, [&](std::size_t begin, std::size_t end) {
