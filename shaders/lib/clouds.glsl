@@ -65,7 +65,8 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
   // The noises seldom exceed two and a half deviations.
   float bound = s + 2.5f * shapeAmount + 2.0f * layer.detailAmount * detail;
   if (bound <= 0.0f) {
-    clearM = -bound * layer.reachM;
+    // Nearer the surface the noise comes back and meets the ray half way.
+    clearM = max(-s - 0.9f * layer.shapeAmount, 0.0f) * layer.reachM;
     return 0.0f;
   }
   vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z);

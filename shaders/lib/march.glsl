@@ -110,9 +110,10 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
       point = cloudsInBand(band, q, detail);
       shortStep = max(uStepNearM, uStepShare * t);
       if (point.inside) shortStep = max(shortStep, point.stepM);
+      if (!point.inside) point.clearM = 0.0;  // rounded out of the band at its border: nothing is known
       if (point.extinction <= 0.0) {
         lastClear = t;
-        t += fine > 0 ? shortStep : clamp(2.2 * point.clearM, shortStep, uStepLong * shortStep);
+        t += fine > 0 ? shortStep : clamp(point.clearM, shortStep, uStepLong * shortStep);
         --fine;
       } else if (fine <= 0) {
         // Out of clear air into a cloud: back, and on with short steps from a place of chance. (Bounded steps end at the same depth

@@ -115,8 +115,8 @@ MarchSettings marchSettings(scene::Quality quality) {
       return {.subframes = 4,
               .tolerance = 0.012f,
               .noise = 0.04f,
-              .stepNearM = 38.0f,
-              .stepShare = 0.010f,
+              .stepNearM = 42.0f,
+              .stepShare = 0.0115f,
               .maxSteps = 240,
               .sunSamples = 2};
     case scene::Quality::kHigh:
