@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/parallel.h"
 
 namespace welkin::render {
@@ -11,10 +12,6 @@ namespace {
 
 constexpr int kTilePx = 32;
 constexpr int kResolveRadius = 2;
-
-float luminanceOf(const float* rgb) {
-  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
 
 bool isUnfinished(const Image<float>& first, const Image<float>& both, int x0, int y0, float tolerance) {
   const int x1 = std::min(x0 + kTilePx, first.width), y1 = std::min(y0 + kTilePx, first.height);

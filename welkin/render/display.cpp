@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/parallel.h"
 
 namespace welkin::render {
@@ -17,10 +18,6 @@ double whiteLuminance(double ev) {
 }
 double evOfWhite(double luminance) {
   return std::log2(luminance / 1.2);
-}
-
-float luminanceOf(const float* rgb) {
-  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
 }
 
 // Linear up to kKnee, then a shoulder that reaches 1 at infinity with continuous slope: clouds keep their

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/sky/light.h"
 
+#include "welkin/core/colour.h"
+
 namespace welkin::sky {
 namespace {
 
 // The triple scaled to photometric weight 1.
 glm::vec3 unitLuminance(glm::vec3 c) {
-  return c / (0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z);
+  return c / luminanceOf(&c.x);
 }
 
 }  // namespace
