@@ -13,7 +13,7 @@ out="$2"
 mkdir -p "$out"
 
 still=(--size 1280x720 --quality medium)
-dome=(--projection fisheye --look auto,90,180 --size 1024x1024 --quality medium)
+dome=(--projection fisheye --size 1024x1024 --quality medium)
 environment=(--projection equirect --look 0,0 --quality medium)
 environment_size=2048x1024
 lapse=(--size 640x360 --quality low --frames 120 --fps 24 --speed 120)
