@@ -123,8 +123,10 @@ Disagreement compare(const scene::Scene& scene) {
 TEST(Projections, ShowTheSameClearSky) {
   // The sun stands elsewhere, in the west.
   const Disagreement d = compare(clearScene(40.0));
+  // At worst in the glare about the sun, where the resolve's five pixels span more of the gradient in the
+  // coarser pictures.
   EXPECT_LT(d.mean, 0.003);
-  EXPECT_LT(d.worst, 0.02);
+  EXPECT_LT(d.worst, 0.04);
   RecordProperty("mean", std::to_string(d.mean));
 }
 
