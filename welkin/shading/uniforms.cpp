@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
@@ -165,18 +164,31 @@ Uniforms projectorUniforms(const scene::SkyState& state) {
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
   constexpr float kSpacingM = 70.0f;
   constexpr int kFewest = 5, kMost = 24;
+  constexpr float kThinnestM = 50.0f;
+  constexpr std::size_t kMostBands = field::kMaxLayers;  // the length of the uniform array
   LightVolumeLayout layout;
   const auto layers = state.clouds->layers();
-  std::vector<int> order(layers.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return std::pair(layers[a].baseM, a) < std::pair(layers[b].baseM, b); });
-  for (const int i : order) {
-    const field::CloudLayer& layer = layers[static_cast<std::size_t>(i)];
-    if (layout.bands.empty() || layer.baseM > layout.bands.back().topM)
-      layout.bands.push_back({layer.baseM, layer.topM, 0, 0, {}});
-    layout.bands.back().topM = std::max(layout.bands.back().topM, layer.topM);
-    layout.bands.back().layers.push_back(i);
+  // A band is a range of heights with the same layers all through: cut at every base and top, so that the
+  // foot of a cumulonimbus costs nothing further up.
+  std::vector<float> cuts;
+  for (const field::CloudLayer& layer : layers) cuts.insert(cuts.end(), {layer.baseM, layer.topM});
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+    LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}};
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      if (layers[i].baseM <= band.baseM && layers[i].topM >= band.topM)
+        band.layers.push_back(static_cast<int>(i));
+    if (band.layers.empty() || band.topM <= band.baseM) continue;
+    // Too thin to be worth a band of its own, or no more of them to be had: to the one beneath.
+    const bool touches = !layout.bands.empty() && layout.bands.back().topM == band.baseM;
+    if ((touches && band.topM - band.baseM < kThinnestM) || layout.bands.size() == kMostBands) {
+      layout.bands.back().topM = band.topM;
+      for (const int i : band.layers)
+        if (std::ranges::find(layout.bands.back().layers, i) == layout.bands.back().layers.end())
+          layout.bands.back().layers.push_back(i);
+    } else {
+      layout.bands.push_back(band);
+    }
   }
   for (auto& band : layout.bands) {
     const int n = std::clamp(static_cast<int>((band.topM - band.baseM) / kSpacingM), kFewest, kMost);

@@ -61,7 +61,7 @@ struct LightVolumeLayout {
   static constexpr int kColumns = 160;  // a side, of each cascade
   static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
                                                   128000.0f};  // half the side of each cascade
-  std::vector<Band> bands;                                     // from the ground up, disjoint
+  std::vector<Band> bands;                                     // from the ground up; they may touch
   std::vector<float> heightsM;                                 // of the slices
   glm::vec3 line{0, 0, 1};                                     // along which depths are summed; z > 0
   bool towardsSun = true;                                      // or away from it
