@@ -86,7 +86,9 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
   return layer.extinction * body * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
 }
 
-// The longest step that resolves a layer: a share of its depth and of its mean free path.
+// The longest step that resolves a layer: a share of its depth and of its mean free path; and of deep layers, whose forms are large, a
+// small share of the depth whatever the path.
 WELKIN_FN float cloudStepM(CloudLayer layer) {
-  return min(0.25f / layer.extinction, 0.07f * (layer.topM - layer.baseM));
+  float depth = layer.topM - layer.baseM;
+  return max(min(0.25f / layer.extinction, 0.07f * depth), 0.006f * depth);
 }
