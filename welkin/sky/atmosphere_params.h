@@ -9,9 +9,9 @@
 namespace welkin::sky {
 
 // The defaults, with a visibility of 40 km, are the clear sky of the illuminance tables (aerosol optical
-// depth 0.19 at 550 nm).
+// depth 0.18 at 550 nm).
 struct AtmosphereParams {
-  double aerosolScaleHeightM = 2200.0;  // e-folding height of the haze in good visibility
+  double aerosolScaleHeightM = 2100.0;  // e-folding height of the haze in good visibility
   double aerosolAlbedo = 0.90;          // single-scattering albedo of the haze
   double aerosolG = 0.56;               // mean cosine of its phase function
   double ozoneDu = 344.0;               // ozone column, Dobson units; 344: mid-latitudes (ASTM G173)
