@@ -13,7 +13,6 @@
 // Light from the sky above and the ground below uses the same solution for diffuse light; in equal light from both sides the cloud
 // vanishes, as it must.
 
-WELKIN_CONST float kDropletAsymmetry = 0.86f;          // mean cosine of scattering by cloud droplets
 WELKIN_CONST float kSimilarity = 1.0f - kDropletAsymmetry;
 WELKIN_CONST float kForwardLobe = 1.62f;               // weight and
 WELKIN_CONST float kForwardLobeG = 0.593f;             // mean cosine of the lobe of light scattered a few times

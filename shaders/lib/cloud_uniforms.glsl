@@ -15,6 +15,11 @@ uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
 uniform sampler3D uDetailNoise;
 
+// How far a point is inside each layer's cloud before the 3D noises shape it (cloudSurface).
+struct CloudSurfaces {
+  float s[8];
+};
+
 // What the layers at a point come to.
 struct CloudPoint {
   float extinction;  // 1/m
@@ -24,10 +29,23 @@ struct CloudPoint {
   bool inside;       // between base and top of any layer
 };
 
-void addLayer(CloudLayer layer, float ice, vec3 q, float detail, inout CloudPoint point) {
+// First half of the question: the surfaces from the placement alone. Returns a distance within which there is no cloud, or -1 if the
+// 3D noises have to be asked.
+float clearanceInBand(int band, vec3 q, float detail, out CloudSurfaces surfaces) {
+  float clearM = 1e9;
+#define WELKIN_CLEARANCE(i, b)                                     \
+  if (band == b) {                                                 \
+    surfaces.s[i] = cloudSurface(uLayers[i], uPlacement, q);       \
+    clearM = min(clearM, cloudClearance(uLayers[i], q, surfaces.s[i], detail)); \
+  }
+  WELKIN_EACH_LAYER(WELKIN_CLEARANCE)
+  return clearM;
+}
+
+void addLayer(CloudLayer layer, float ice, vec3 q, float surface, float detail, inout CloudPoint point) {
   if (q.z < layer.baseM || q.z > layer.topM) return;
   float clearM;
-  float extinction = cloudExtinction(layer, uPlacement, uShapeNoise, uDetailNoise, q, detail, clearM);
+  float extinction = cloudExtinctionFrom(layer, uShapeNoise, uDetailNoise, q, surface, detail, clearM);
   point.extinction += extinction;
   point.ice += extinction * ice;
   point.clearM = min(point.clearM, clearM);
@@ -35,9 +53,17 @@ void addLayer(CloudLayer layer, float ice, vec3 q, float detail, inout CloudPoin
   point.inside = true;
 }
 
-CloudPoint cloudsInBand(int band, vec3 q, float detail) {
+// Second half: what is there.
+CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfaces) {
   CloudPoint point = CloudPoint(0.0, 0.0, 1e9, 1e9, false);
-#define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], q, detail, point);
+#define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], q, surfaces.s[i], detail, point);
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
   return point;
+}
+
+// Extinction in one go, with the large shapes alone.
+float cloudExtinctionInBand(int band, vec3 q) {
+  CloudSurfaces surfaces;
+  clearanceInBand(band, q, 0.0, surfaces);
+  return cloudsAtSurfaces(band, q, 0.0, surfaces).extinction;
 }

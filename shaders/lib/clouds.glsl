@@ -50,28 +50,43 @@ WELKIN_FN float cloudProfile(CloudLayer layer, float h) {
   return layer.dome * pow(h, layer.domePower) + layer.belly * towardsBase * towardsBase - anvil;
 }
 
-// Extinction at q. `detail` in [0, 1] fades the small noise out where it would be smaller than a pixel or a step.
-// clearM: where the density is 0, a distance within which it stays so (an estimate with a margin); else 0.
-WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D shapeNoise, sampler3D detailNoise, vec3 q,
-                                float detail, WELKIN_OUT(float) clearM) {
+// How far q is inside the cloud before the 3D noises shape it, sd; -1e3 above the layer's top and below its base.
+WELKIN_FN float cloudSurface(CloudLayer layer, sampler2D placement, vec3 q) {
+  float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
+  if (h <= 0.0f || h >= 1.0f) return -1e3f;
+  return cloudPlacement(layer, placement, cloudPatternPosition(layer, q, h)) - layer.threshold - cloudProfile(layer, h);
+}
+
+// Strength of the large noise where the surface is s away. Noise shapes the surface but makes no cloud of its own: it fades out
+// outwards.
+WELKIN_FN float cloudShapeAmount(CloudLayer layer, float s, float h) {
+  float amount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
+  return amount * smoothstep(-2.5f * layer.shapeAmount, -0.4f * layer.shapeAmount, s);
+}
+
+// Where the noises cannot make cloud, s being cloudSurface there: a distance, metres, within which it stays so (an estimate with a
+// margin, 0 or more). Elsewhere -1.
+WELKIN_FN float cloudClearance(CloudLayer layer, vec3 q, float s, float detail) {
+  if (s <= -1e3f) return 0.0f;  // beyond base and top nothing is known
+  float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
+  // The noises seldom exceed two and a half deviations.
+  if (s + 2.5f * cloudShapeAmount(layer, s, h) + 2.0f * layer.detailAmount * detail > 0.0f) return -1.0f;
+  // Nearer the surface the noise comes back and meets the ray half way.
+  return max(-s - 0.9f * layer.shapeAmount, 0.0f) * layer.reachM;
+}
+
+// Extinction at q, s being cloudSurface there. `detail` in [0, 1] fades the small noise out where it would be smaller than a pixel or
+// a step. clearM: where the density is 0, a distance within which it stays so; else 0.
+WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, sampler3D detailNoise, vec3 q, float s, float detail,
+                                    WELKIN_OUT(float) clearM) {
+  clearM = cloudClearance(layer, q, s, detail);
+  if (clearM >= 0.0f) return 0.0f;
   clearM = 0.0f;
   float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
-  if (h <= 0.0f || h >= 1.0f) return 0.0f;
   vec2 p = cloudPatternPosition(layer, q, h);
-  float s = cloudPlacement(layer, placement, p) - layer.threshold - cloudProfile(layer, h);
-  // Noise shapes the surface but makes no cloud of its own: it fades out away from the surface outwards.
-  float shapeAmount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
-  shapeAmount *= smoothstep(-2.5f * layer.shapeAmount, -0.4f * layer.shapeAmount, s);
-  // The noises seldom exceed two and a half deviations.
-  float bound = s + 2.5f * shapeAmount + 2.0f * layer.detailAmount * detail;
-  if (bound <= 0.0f) {
-    // Nearer the surface the noise comes back and meets the ray half way.
-    clearM = max(-s - 0.9f * layer.shapeAmount, 0.0f) * layer.reachM;
-    return 0.0f;
-  }
   vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z);
-  s += shapeAmount * textureLod(shapeNoise, (p3 - layer.shapeShiftM) / layer.shapeM, 0.0f).x;
-  bound = s + 2.0f * layer.detailAmount * detail;
+  s += cloudShapeAmount(layer, s, h) * textureLod(shapeNoise, (p3 - layer.shapeShiftM) / layer.shapeM, 0.0f).x;
+  float bound = s + 2.0f * layer.detailAmount * detail;
   if (bound <= 0.0f) {
     clearM = -bound * layer.reachM * 0.5f;
     return 0.0f;
@@ -84,6 +99,12 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
   float body = clamp(s / layer.edge, 0.0f, 1.0f);
   float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
   return layer.extinction * body * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
+}
+
+// The same in one go and with all noises.
+WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D shapeNoise, sampler3D detailNoise, vec3 q,
+                                WELKIN_OUT(float) clearM) {
+  return cloudExtinctionFrom(layer, shapeNoise, detailNoise, q, cloudSurface(layer, placement, q), 1.0f, clearM);
 }
 
 // The longest step that resolves a layer: a share of its depth and of its mean free path; and of deep layers, whose forms are large, a

@@ -69,7 +69,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float 
     float x = (float(i) + 1.0) / (float(uSunSamples) + 1.0);
     float end = uSunReachM * x * x * x;
     float at = mix(done, end, fract(dither + 0.382 * float(i)));
-    near += (end - done) * cloudsInBand(band, q + uKeyDirection * at, 0.0).extinction;
+    near += (end - done) * cloudExtinctionInBand(band, q + uKeyDirection * at);
     done = end;
   }
   CloudDepths depths = cloudDepthsAt(uLightVolume, q, dither);
@@ -103,14 +103,23 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     float shortStep, detail;
     bool hit = false;
     while (state.steps < uMaxSteps && t < stretch.y) {
-      ++state.steps;
-      p = vec3(0.0, 0.0, uEyeM) + dir * t;
-      q = cloudPosition(p, uEarthRadiusM);
-      detail = clamp(2.0 - 12.0 * t * pixelRad / 40.0, 0.0, 1.0);
-      point = cloudsInBand(band, q, detail);
-      shortStep = max(uStepNearM, uStepShare * t);
+      CloudSurfaces surfaces;
+      float clearM = -1.0;
+      while (state.steps < uMaxSteps && t < stretch.y) {
+        ++state.steps;
+        p = vec3(0.0, 0.0, uEyeM) + dir * t;
+        q = cloudPosition(p, uEarthRadiusM);
+        detail = clamp(2.0 - 12.0 * t * pixelRad / 40.0, 0.0, 1.0);
+        shortStep = max(uStepNearM, uStepShare * t);
+        clearM = clearanceInBand(band, q, detail, surfaces);
+        if (clearM < 0.0) break;
+        lastClear = t;
+        t += fine > 0 ? shortStep : clamp(clearM, shortStep, uStepLong * shortStep);
+        --fine;
+      }
+      if (clearM >= 0.0) break;
+      point = cloudsAtSurfaces(band, q, detail, surfaces);
       if (point.inside) shortStep = max(shortStep, point.stepM);
-      if (!point.inside) point.clearM = 0.0;  // rounded out of the band at its border: nothing is known
       if (point.extinction <= 0.0) {
         lastClear = t;
         t += fine > 0 ? shortStep : clamp(point.clearM, shortStep, uStepLong * shortStep);

@@ -4,6 +4,7 @@
 // Shared by C++ and GLSL, see welkin/core/glsl.h; C++ programs use welkin/optics/phase.h.
 
 WELKIN_CONST float kInvFourPi = 0.0795774715f;  // 1 / (4 pi)
+WELKIN_CONST float kDropletAsymmetry = 0.86f;      // mean cosine of scattering by cloud droplets, for closed forms
 
 WELKIN_FN float phaseIsotropic() { return kInvFourPi; }
 

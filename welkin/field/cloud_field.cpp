@@ -83,7 +83,7 @@ float CloudField::extinction(glm::vec3 p) const {
   const glm::vec3 q = cloudPosition(p, static_cast<float>(earthRadiusM_));
   float sum = 0.0f, clear = 0.0f;
   for (const CloudLayer& layer : layers_)
-    sum += cloudExtinction(layer, placement, shape, detail, q, 1.0f, clear);
+    sum += cloudExtinction(layer, placement, shape, detail, q, clear);
   return sum;
 }
 
@@ -115,7 +115,7 @@ float CloudField::opticalDepth(glm::vec3 from, glm::vec3 direction, float enough
         const float step = std::min(std::max(fine, kShareOfDistance * t), stop - t);
         float clear = 0.0f;
         const glm::vec3 q = cloudPosition(from + direction * (t + 0.5f * step), radius);
-        tau += step * cloudExtinction(layer, placement, shape, detail, q, 1.0f, clear);
+        tau += step * cloudExtinction(layer, placement, shape, detail, q, clear);
         t += std::max(step, 0.7f * clear);
       }
     }

@@ -45,5 +45,8 @@ float phaseDroplet(float c, const DropletPhase& p) {
 float dropletMeanCosine(const DropletPhase& p) {
   return shared::dropletMeanCosine(toShared(p));
 }
+float dropletAsymmetry() {
+  return shared::kDropletAsymmetry;
+}
 
 }  // namespace welkin::optics

@@ -26,5 +26,7 @@ struct DropletPhase {
 DropletPhase dropletPhase(float diameterUm);
 float phaseDroplet(float c, const DropletPhase& p);
 float dropletMeanCosine(const DropletPhase& p);
+// The mean cosine that closed forms for the inside of clouds go by, whatever the droplets.
+float dropletAsymmetry();
 
 }  // namespace welkin::optics

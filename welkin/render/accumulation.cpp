@@ -13,44 +13,66 @@ namespace {
 constexpr int kTilePx = 32;
 constexpr int kResolveRadius = 2;
 
-bool isUnfinished(const Image<float>& first, const Image<float>& both, int x0, int y0, float tolerance) {
-  const int x1 = std::min(x0 + kTilePx, first.width), y1 = std::min(y0 + kTilePx, first.height);
+// How far the luminance at (x, y) is from the line through its neighbours, relative to theirs: zero in flat
+// areas and in gradients, however steep.
+float roughness(const Image<float>& sums, int x, int y) {
+  auto luminance = [&](int u, int v) {
+    const float* p = &sums.data[sums.index(u, v)];
+    return luminanceOf(p) / p[3];
+  };
+  const float own = 2.0f * luminance(x, y);
+  float largest = 0.0f;
+  auto compare = [&](float sum) {
+    largest = std::max(largest, std::abs(sum - own) / std::max(sum + own, 1e-12f));
+  };
+  if (x > 0 && x + 1 < sums.width) compare(luminance(x - 1, y) + luminance(x + 1, y));
+  if (y > 0 && y + 1 < sums.height) compare(luminance(x, y - 1) + luminance(x, y + 1));
+  return largest;
+}
+
+// Does any measure of a pixel of the tile exceed four times the tolerance, or their mean the tolerance?
+template <class Measure>
+bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, const Measure& measure) {
+  const int x1 = std::min(x0 + kTilePx, size.width), y1 = std::min(y0 + kTilePx, size.height);
   float sum = 0.0f, largest = 0.0f;
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
-      const float a = luminanceOf(&first.data[first.index(x, y)]);
-      const float total = luminanceOf(&both.data[both.index(x, y)]);
-      const float difference = std::abs(total - 2.0f * a) / std::max(total, 1e-12f);
-      sum += difference;
-      largest = std::max(largest, difference);
+      const float m = measure(x, y);
+      sum += m;
+      largest = std::max(largest, m);
     }
   return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > 4.0f * tolerance;
 }
 
-}  // namespace
-
-std::vector<gpu::Tile> unfinishedTiles(const Image<float>& first, const Image<float>& both, float tolerance) {
-  const int columns = (first.width + kTilePx - 1) / kTilePx, rows = (first.height + kTilePx - 1) / kTilePx;
-  std::vector<char> unfinished(static_cast<std::size_t>(columns) * rows);
-  parallelFor(unfinished.size(), 16, [&](std::size_t begin, std::size_t end) {
+// The tiles for which `wanted(x0, y0)`, merged along rows.
+template <class Wanted>
+std::vector<gpu::Tile> tilesWhere(int width, int height, const Wanted& wanted) {
+  const int columns = (width + kTilePx - 1) / kTilePx, rows = (height + kTilePx - 1) / kTilePx;
+  std::vector<char> chosen(static_cast<std::size_t>(columns) * rows);
+  parallelFor(chosen.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      unfinished[i] = isUnfinished(first, both, static_cast<int>(i) % columns * kTilePx,
-                                   static_cast<int>(i) / columns * kTilePx, tolerance);
+      chosen[i] = wanted(static_cast<int>(i) % columns * kTilePx, static_cast<int>(i) / columns * kTilePx);
   });
 
   std::vector<gpu::Tile> tiles;
   for (int row = 0; row < rows; ++row) {
-    const int top = row * kTilePx, bottom = std::min(top + kTilePx, first.height);
+    const int top = row * kTilePx, bottom = std::min(top + kTilePx, height);
     for (int column = 0; column < columns; ++column) {
-      if (!unfinished[static_cast<std::size_t>(row) * columns + column]) continue;
+      if (!chosen[static_cast<std::size_t>(row) * columns + column]) continue;
       const int left = column * kTilePx;
-      while (column + 1 < columns && unfinished[static_cast<std::size_t>(row) * columns + column + 1])
-        ++column;
-      tiles.push_back(
-          {left, first.height - bottom, std::min((column + 1) * kTilePx, first.width) - left, bottom - top});
+      while (column + 1 < columns && chosen[static_cast<std::size_t>(row) * columns + column + 1]) ++column;
+      tiles.push_back({left, height - bottom, std::min((column + 1) * kTilePx, width) - left, bottom - top});
     }
   }
   return tiles;
+}
+
+}  // namespace
+
+std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance) {
+  return tilesWhere(first.width, first.height, [&](int x0, int y0) {
+    return exceeds(first, x0, y0, tolerance, [&](int x, int y) { return roughness(first, x, y); });
+  });
 }
 
 Image<float> resolve(const Image<float>& sums, float noise) {

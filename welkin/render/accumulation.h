@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of a still need more sub-frames. Two sub-frames that agree about a tile are enough for it:
-// clear sky, ground, the inside of an overcast. Edges and rough cloud get them all.
+// Which parts of a still need more than one sub-frame, and the picture from their sums.
 #pragma once
 
 #include <vector>
@@ -10,10 +9,12 @@
 
 namespace welkin::render {
 
-// Tiles (merged along rows) in which the sub-frames `first` and `both` - `first` differ by more than
-// `tolerance`: the mean relative difference of luminance, or a quarter of the largest. `both` is the sum of
-// the two sub-frames; top row first, RGBA. The tiles count from the bottom, as draws do.
-std::vector<gpu::Tile> unfinishedTiles(const Image<float>& first, const Image<float>& both, float tolerance);
+// Tiles (merged along rows) that one sub-frame does not settle: where luminance leaves the line between its
+// neighbours by more than `tolerance` in the mean or four times that anywhere, relative to itself. Edges,
+// fine forms and dither are rough; clear sky, haze and the inside of an overcast are not, whatever their
+// gradient. `first`: the first sub-frame, RGBA with its weight in alpha, top row first. The tiles count from
+// the bottom, as draws do.
+std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance);
 
 // The picture from sums of sub-frames: RGB means by the counts in alpha, and the dither that a few sub-frames
 // leave taken out. The dither is such that any three by three pixels hold all its values, so the mean over

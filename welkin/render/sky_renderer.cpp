@@ -19,13 +19,14 @@ namespace welkin::render {
 namespace {
 
 // Point i of a sequence that fills the unit square evenly from the start (M. Roberts 2018, "The Unreasonable
-// Effectiveness of Quasirandom Sequences": R2, R1 in one dimension).
+// Effectiveness of Quasirandom Sequences": R2, R1 in one dimension). The first is the middle: where one
+// sub-frame is enough, it shows the pixels' centres.
 glm::vec2 quasiRandom2(int i) {
-  auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * (i + 1), 1.0)); };
+  auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * i, 1.0)); };
   return {part(0.7548776662466927), part(0.5698402909980532)};
 }
 float quasiRandom1(int i) {
-  return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * (i + 1), 1.0));
+  return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * i, 1.0));
 }
 
 // The whole picture in strips, a few to a sub-frame.
@@ -110,10 +111,9 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   const gpu::Texture2D sum(width, height, full);
   const gpu::Framebuffer target(sum);
   target.clear();
-  // Sums of sub-frames, with their number in alpha. The first two cover the picture; the others only what
-  // these disagree about.
+  // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
+  // be rough.
   std::vector<gpu::Tile> tiles = rowBands(width, height);
-  Image<float> first;
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
     p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
@@ -123,9 +123,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
       gpu::finish();  // so that progress is true and Ctrl-C is heard
       progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
     }
-    if (i == 0) first = target.readPicture();
-    if (i == 1 && settings.subframes > 2)
-      tiles = unfinishedTiles(first, target.readPicture(), settings.tolerance);
+    if (i == 0) tiles = roughTiles(target.readPicture(), settings.tolerance);
   }
   if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
   done("march");

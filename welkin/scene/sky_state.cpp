@@ -7,6 +7,7 @@
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
+#include "welkin/optics/phase.h"
 #include "welkin/sky/light.h"
 
 namespace welkin::scene {
@@ -29,7 +30,7 @@ double diffuseTransmittance(const weather::Weather& weather, const field::CloudF
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     const field::CloudLayer& layer = clouds.layers()[i];
     const double tau = 0.4 * layer.extinction * (layer.topM - layer.baseM);
-    const double cloudy = 1.0 / (1.0 + 0.75 * 0.14 * tau);
+    const double cloudy = 1.0 / (1.0 + 0.75 * (1.0 - optics::dropletAsymmetry()) * tau);
     through *= 1.0 - weather.layers[i].oktas / kOktas * (1.0 - cloudy);
   }
   return through;

@@ -141,7 +141,7 @@ MarchSettings marchSettings(scene::Quality quality) {
 Uniforms marchUniforms(const MarchSettings& settings) {
   return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
           {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
-          {"uSunSamples", settings.sunSamples}, {"uSunReachM", 400.0f}};
+          {"uSunSamples", settings.sunSamples}, {"uSunReachM", 200.0f}};
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
@@ -164,6 +166,37 @@ TEST_F(Sky, TheMoonBrightensTheNight) {
     EXPECT_GT(moonless, 1e-5) << cloudy;
     EXPECT_LT(moonlit, 0.1) << cloudy;
   }
+}
+
+// What a picture has of fine structure that the truth lacks: the relative difference of the two less its mean
+// over the four neighbours, in the median.
+double grain(const Image<float>& picture, const Image<float>& truth) {
+  const auto difference = [&](int x, int y) {
+    return luminanceOf(pixel(picture, x, y)) / luminanceOf(pixel(truth, x, y)) - 1.0;
+  };
+  std::vector<double> fine;
+  for (int y = 1; y + 1 < picture.height; ++y)
+    for (int x = 1; x + 1 < picture.width; ++x) {
+      const double around =
+          difference(x - 1, y) + difference(x + 1, y) + difference(x, y - 1) + difference(x, y + 1);
+      fine.push_back(std::abs(difference(x, y) - 0.25 * around));
+    }
+  std::ranges::nth_element(fine, fine.begin() + fine.size() / 2);
+  return fine[fine.size() / 2];
+}
+
+// The sunlit side of a cumulonimbus shows every dither that is left.
+TEST_F(Sky, NoGrainAtMedium) {
+  scene::Scene s = sized(looking(cloudyScene(40.0, {Genus::kCumulonimbus}, 5.0), 140.0, 24.0, 16.0), 96, 54);
+  s.time = parseUtcTime("2026-09-26T09:00:00Z");
+  s.seed = 5;
+  s.metar = "GABS 262100Z TS FEW020 SCT030CB 28/25 Q1014";
+  s.layers.clear();
+  s.place = {.latitudeDeg = 12.5335, .longitudeDeg = -7.9499, .altitudeM = 380};
+  s.output.quality = scene::Quality::kUltra;
+  const Image<float> converged = drawn(s);
+  s.output.quality = scene::Quality::kMedium;
+  EXPECT_LT(grain(drawn(s), converged), 0.005);
 }
 
 TEST_F(Sky, ProgressGrowsToOneAndCanStopTheDrawing) {
