@@ -5,6 +5,27 @@
 
 namespace welkin::gpu {
 
+DrawState::DrawState(const Program& program, const Target& target, const DrawOptions& options) {
+  Framebuffer::bindArea(target.framebuffer, target.area.x, target.area.y, target.area.width,
+                        target.area.height);
+  program.use();
+  if (options.tile) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(target.area.x + options.tile->x, target.area.y + options.tile->y, options.tile->width,
+              options.tile->height);
+  }
+  if (options.blend != Blend::kReplace) {
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, options.blend == Blend::kAdd ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+  }
+}
+
+DrawState::~DrawState() {
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
+}
+
 FullscreenTriangle::FullscreenTriangle() {
   glGenVertexArrays(1, &vertexArray_);
 }
@@ -12,23 +33,11 @@ FullscreenTriangle::~FullscreenTriangle() {
   glDeleteVertexArrays(1, &vertexArray_);
 }
 
-void FullscreenTriangle::draw(const Program& program, const Framebuffer& target,
+void FullscreenTriangle::draw(const Program& program, const Target& target,
                               const DrawOptions& options) const {
-  target.bind();
-  program.use();
+  const DrawState state(program, target, options);
   glBindVertexArray(vertexArray_);
-  if (options.tile) {
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(options.tile->x, options.tile->y, options.tile->width, options.tile->height);
-  }
-  if (options.blend == Blend::kAdd) {
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE);
-  }
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_BLEND);
-  glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(0);
 }
 

@@ -17,18 +17,35 @@ struct Tile {
   int width = 0, height = 0;
 };
 
+// Where a draw goes: a framebuffer, this folder's or by its GL name, and the part of it that is the picture.
+struct Target {
+  Target(const Framebuffer& f) : framebuffer(f.id()), area{0, 0, f.width(), f.height()} {}  // NOLINT: is one
+  Target(unsigned name, const Tile& viewport) : framebuffer(name), area(viewport) {}
+  unsigned framebuffer = 0;
+  Tile area;
+};
+
 enum class Blend {
   kReplace,
-  kAdd,  // onto what is there: accumulation, into a 32-bit float target
+  kAdd,   // onto what is there: accumulation, into a 32-bit float target
+  kOver,  // colour premultiplied with alpha, before what is there
 };
 
 struct DrawOptions {
-  std::optional<Tile> tile;  // absent: the whole target
+  std::optional<Tile> tile{};  // absent: the whole target
   Blend blend = Blend::kReplace;
 };
 
-// Draws the triangle of shaders/pass/fullscreen.vert. Depth test, culling and all else are as in a fresh
-// context.
+// The state of a draw while it lives. Depth test, culling and all else are as in a fresh context.
+class DrawState {
+ public:
+  DrawState(const Program& program, const Target& target, const DrawOptions& options);
+  ~DrawState();
+  DrawState(const DrawState&) = delete;
+  DrawState& operator=(const DrawState&) = delete;
+};
+
+// Draws the triangle of shaders/pass/fullscreen.vert.
 class FullscreenTriangle {
  public:
   FullscreenTriangle();
@@ -37,7 +54,7 @@ class FullscreenTriangle {
   FullscreenTriangle& operator=(const FullscreenTriangle&) = delete;
 
   // Binds the target and runs the program over it. Textures are bound already, see Program::bind.
-  void draw(const Program& program, const Framebuffer& target, const DrawOptions& options = {}) const;
+  void draw(const Program& program, const Target& target, const DrawOptions& options = {}) const;
 
  private:
   unsigned vertexArray_ = 0;  // empty, but core profiles want one

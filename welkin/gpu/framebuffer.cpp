@@ -60,13 +60,17 @@ void Framebuffer::attached(int index, int width, int height) {
   glDrawBuffers(kMaxAttachments, buffers);
 }
 
-void Framebuffer::bind() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+void Framebuffer::bindArea(unsigned name, int x, int y, int width, int height) {
+  glBindFramebuffer(GL_FRAMEBUFFER, name);
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE)
-    throw GpuError("this device cannot draw to the framebuffer of " + std::to_string(width_) + " x " +
-                   std::to_string(height_) + " pixels (status " + std::to_string(status) + ")");
-  glViewport(0, 0, width_, height_);
+    throw GpuError("this device cannot draw to the framebuffer of " + std::to_string(width) + " x " +
+                   std::to_string(height) + " pixels (status " + std::to_string(status) + ")");
+  glViewport(x, y, width, height);
+}
+
+void Framebuffer::bind() const {
+  bindArea(id_, 0, 0, width_, height_);
 }
 
 void Framebuffer::clear(int index, const glm::vec4& value) const {

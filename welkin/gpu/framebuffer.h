@@ -26,11 +26,14 @@ class Framebuffer {
   void attach(int index, const Texture2D& texture);
   void attachSlice(int index, const Texture3D& volume, int z);
 
+  unsigned id() const { return id_; }  // the GL name
   int width() const { return width_; }
   int height() const { return height_; }
 
   // Makes it the target of draws, over its whole size. Throws GpuError if the device cannot draw to it.
   void bind() const;
+  // The same for any framebuffer by its GL name (0: the window's) and a part of it.
+  static void bindArea(unsigned name, int x, int y, int width, int height);
   // Fills an attachment with one value. Binds.
   void clear(int index = 0, const glm::vec4& value = glm::vec4(0.0f)) const;
 
