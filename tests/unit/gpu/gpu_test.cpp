@@ -22,7 +22,7 @@ namespace welkin::gpu {
 namespace {
 
 // A context whose driver must have had nothing to complain about when the test ends.
-class Gpu : public testing::Test {
+class Gpu : public ::testing::Test {
  protected:
   void TearDown() override {
     for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/testing/foreign_engine.h"
+
+#include <epoxy/gl.h>
+
+namespace welkin::testing {
+
+struct ForeignEngine::Objects {
+  GLuint vertexArray = 0, buffer = 0, sampler = 0, plane = 0, volume = 0, framebuffer = 0;
+};
+
+ForeignEngine::ForeignEngine() : objects_(std::make_unique<Objects>()) {
+  Objects& o = *objects_;
+  glGenVertexArrays(1, &o.vertexArray);
+  glGenBuffers(1, &o.buffer);
+  glGenSamplers(1, &o.sampler);
+  glGenTextures(1, &o.plane);
+  glGenTextures(1, &o.volume);
+  glGenFramebuffers(1, &o.framebuffer);
+  glBindTexture(GL_TEXTURE_2D, o.plane);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glBindFramebuffer(GL_FRAMEBUFFER, o.framebuffer);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, o.plane, 0);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  restore();
+}
+
+ForeignEngine::~ForeignEngine() {
+  const Objects& o = *objects_;
+  glBindVertexArray(0);
+  glDeleteVertexArrays(1, &o.vertexArray);
+  glDeleteBuffers(1, &o.buffer);
+  glDeleteSamplers(1, &o.sampler);
+  glDeleteTextures(1, &o.plane);
+  glDeleteTextures(1, &o.volume);
+  glDeleteFramebuffers(1, &o.framebuffer);
+  for (const GLenum name : {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST, GL_CULL_FACE, GL_FRAMEBUFFER_SRGB})
+    glDisable(name);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glBlendEquation(GL_FUNC_ADD);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+unsigned ForeignEngine::framebuffer() const {
+  return objects_->framebuffer;
+}
+
+void ForeignEngine::restore() const {
+  const Objects& o = *objects_;
+  glBindVertexArray(o.vertexArray);
+  glBindBuffer(GL_ARRAY_BUFFER, o.buffer);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, o.buffer);
+  glBindFramebuffer(GL_FRAMEBUFFER, o.framebuffer);
+  glViewport(1, 2, 3, 4);
+  glScissor(5, 6, 7, 8);
+  for (const GLenum name : {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST, GL_CULL_FACE, GL_FRAMEBUFFER_SRGB})
+    glEnable(name);
+  glBlendFunc(GL_DST_COLOR, GL_ZERO);
+  glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
+  glColorMask(GL_TRUE, GL_FALSE, GL_TRUE, GL_FALSE);
+  glDepthMask(GL_FALSE);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 12);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+  glActiveTexture(GL_TEXTURE3);
+  glBindTexture(GL_TEXTURE_2D, o.plane);
+  glBindTexture(GL_TEXTURE_3D, o.volume);
+  glBindSampler(3, o.sampler);
+}
+
+std::map<std::string, std::string> ForeignEngine::state() const {
+  std::map<std::string, std::string> state;
+  const auto ask = [&](const char* name, GLenum what, int count) {
+    GLint v[4] = {0, 0, 0, 0};
+    glGetIntegerv(what, v);
+    std::string& text = state[name];
+    for (int i = 0; i < count; ++i) text += std::to_string(v[i]) + ' ';
+  };
+  ask("program", GL_CURRENT_PROGRAM, 1);
+  ask("vertex array", GL_VERTEX_ARRAY_BINDING, 1);
+  ask("array buffer", GL_ARRAY_BUFFER_BINDING, 1);
+  ask("unpack buffer", GL_PIXEL_UNPACK_BUFFER_BINDING, 1);
+  ask("pack buffer", GL_PIXEL_PACK_BUFFER_BINDING, 1);
+  ask("draw framebuffer", GL_DRAW_FRAMEBUFFER_BINDING, 1);
+  ask("read framebuffer", GL_READ_FRAMEBUFFER_BINDING, 1);
+  ask("viewport", GL_VIEWPORT, 4);
+  ask("scissor box", GL_SCISSOR_BOX, 4);
+  ask("blend source", GL_BLEND_SRC_RGB, 1);
+  ask("blend target alpha", GL_BLEND_DST_ALPHA, 1);
+  ask("blend equation", GL_BLEND_EQUATION_RGB, 1);
+  ask("colour mask", GL_COLOR_WRITEMASK, 4);
+  ask("depth mask", GL_DEPTH_WRITEMASK, 1);
+  ask("polygon mode", GL_POLYGON_MODE, 1);
+  ask("unpack alignment", GL_UNPACK_ALIGNMENT, 1);
+  ask("unpack row length", GL_UNPACK_ROW_LENGTH, 1);
+  ask("pack alignment", GL_PACK_ALIGNMENT, 1);
+  ask("active texture", GL_ACTIVE_TEXTURE, 1);
+  for (const GLenum name : {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE,
+                            GL_COLOR_LOGIC_OP, GL_FRAMEBUFFER_SRGB})
+    state["switch " + std::to_string(name)] = glIsEnabled(name) ? "on" : "off";
+  GLint active = 0;
+  glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  for (GLenum i = 0; i < 16; ++i) {
+    glActiveTexture(GL_TEXTURE0 + i);
+    const std::string unit = "unit " + std::to_string(i);
+    ask((unit + " 2D").c_str(), GL_TEXTURE_BINDING_2D, 1);
+    ask((unit + " 3D").c_str(), GL_TEXTURE_BINDING_3D, 1);
+    ask((unit + " sampler").c_str(), GL_SAMPLER_BINDING, 1);
+  }
+  glActiveTexture(static_cast<GLenum>(active));
+  return state;
+}
+
+}  // namespace welkin::testing
