@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind the clouds: the clear sky with its discs, or the ground.
+//
+// Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q, float dither): the share of the key
+// light that clouds let through to the ground at q.
 
-uniform sampler2D uSkyView;
-uniform sampler3D uAerialInscatter;
-uniform sampler3D uAerialTransmittance;
 uniform vec3 uGroundAlbedo;
 uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
-uniform float uClearAir;          // share of the lower air that the sun reaches
-uniform vec3 uHazeLuminance;      // mean luminance about the eye where it does not: what hazy air there tends to
 uniform float uDiscs;             // 1: draw the discs
 uniform vec3 uSunDirection;
 uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, cd/m2
@@ -22,13 +20,6 @@ float groundDistance(vec3 dir) {
   float disc = b * b - c;
   if (b >= 0.0 || disc <= 0.0) return 1e9;
   return c / (-b + sqrt(disc));
-}
-
-void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
-  atmosphereAerial(uAtmosphere, uAerialInscatter, uAerialTransmittance, uEyeM + uGroundAltitudeM, dir, uKeyDirection,
-                   distanceM, inscatter, through);
-  // Air in the shade of clouds is lit from all sides alike.
-  inscatter = mix((1.0 - through) * uHazeLuminance, inscatter, uClearAir);
 }
 
 // A disc as pixels see it: at least a pixel and a half across and with an edge a pixel wide, as bright as keeps its light. So the
@@ -72,8 +63,7 @@ vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
   vec3 q = cloudPosition(p, uEarthRadiusM);
   vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
   float incidence = max(dot(up, uKeyDirection), 0.0);
-  float shadow = exp(-cloudDepthToSun(uLightVolume, vec3(vec2(q), 0.0), dither));
-  vec3 light = keyLightAt(0.0, p) * incidence * shadow + uSkyOnGround;
+  vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q), dither)) + uSkyOnGround;
   // Fields and woods: the albedo wanders by a third about its mean over some hundred metres to kilometres.
   vec2 a = textureLod(uPlacement, vec2(q) / 9000.0, 0.0).xy;
   float b = textureLod(uPlacement, vec2(q.y, -q.x) / 31000.0, 0.0).y;

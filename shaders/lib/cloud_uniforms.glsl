@@ -10,7 +10,6 @@
 
 uniform CloudLayer uLayers[8];
 uniform float uLayerIce[8];       // 1: ice crystals, 0: droplets
-uniform float uEarthRadiusM;      // to the ground
 uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
 uniform sampler3D uDetailNoise;

@@ -2,19 +2,9 @@
 // The march: from the eye through the shells of all layers in one go, band by band in the order in which the ray meets them, over
 // the curved earth. The order is compiled in: WELKIN_EACH_BAND_DOWN(CALL) for rays that come down from above (empty for an eye
 // beneath all cloud), then WELKIN_EACH_BAND_UP(CALL).
+// Needs lib/sky_uniforms.glsl before it.
 
-uniform float uEyeM;              // height of the eye above the ground
-uniform vec3 uKeyDirection;       // towards the light that lights the clouds, sun or moon
-uniform sampler2D uKeyLight;      // its illuminance through the air, lux, by height and by the sine of its elevation
-uniform float uKeyLightTopM;      // height of the table's end
-uniform float uKeyLightReach;     // sines are those at the eye +- this
-uniform Atmosphere uAtmosphere;
-uniform float uGroundAltitudeM;   // of the ground above mean sea level
-uniform sampler2D uTransmittance;
 uniform sampler3D uLightVolume;
-uniform vec3 uSkyLow;             // mean luminance of the upper hemisphere of the clear sky at the ground
-uniform vec3 uSkyHigh;            // the same at 10 km
-uniform vec3 uGroundLight;        // luminance of the ground as clouds see it
 uniform DropletPhase uDroplets;
 uniform float uStepNearM;         // smallest step
 uniform float uStepShare;         // step as a share of the distance
@@ -52,13 +42,6 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
   return vec2(max(outer.x, 0.0), innerHit ? inner.x : outer.y);
 }
 
-// The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
-// day over some clouds and dusk over others.
-vec3 keyLightAt(float heightM, vec3 p) {
-  float sine = uKeyDirection.z + dot(vec2(p), vec2(uKeyDirection)) / uEarthRadiusM;
-  return vec3(textureLod(uKeyLight, vec2(heightM / uKeyLightTopM, 0.5 + 0.5 * (sine - uKeyDirection.z) / uKeyLightReach), 0.0));
-}
-
 // Source function at q: scattered radiance per unit extinction, cd/m2.
 vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float viewHeight, float dither) {
   // Towards the sun: first through the point's own density, then through samples of the large shapes at distances that grow
@@ -77,7 +60,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float 
   float phase = mix(phases.x, phases.y, point.ice / point.extinction);
   vec2 shares = cloudSkyShares(depths);
   return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z) +
-         mix(uSkyLow, uSkyHigh, clamp(q.z / 10000.0, 0.0, 1.0)) * shares.x + uGroundLight * shares.y;
+         skyAbove(q.z) * shares.x + uGroundLight * shares.y;
 }
 
 // What a march carries along a ray.

@@ -5,10 +5,14 @@
 #include "lib/projection.glsl"
 #include "lib/phase.glsl"
 #include "lib/atmosphere.glsl"
+#include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
 #include "lib/march.glsl"
+
+float groundSunlight(vec2 q, float dither) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0), dither)); }
+
 #include "lib/background.glsl"
 
 uniform Projector uProjector;
