@@ -13,6 +13,7 @@
 #include "welkin/render/display.h"
 #include "welkin/render/light_volume_pass.h"
 #include "welkin/render/programs.h"
+#include "welkin/render/sky_textures.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin::render {
@@ -48,8 +49,10 @@ struct SkyRenderer::Impl {
   gpu::Context context;
   gpu::FullscreenTriangle triangle;
   ProgramVariants sky{"pass/sky.frag"};
+  SkyTextures tables;
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
+  gpu::Texture2D sum;  // of sub-frames
 };
 
 SkyRenderer::SkyRenderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -80,12 +83,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
 
   if (!impl_->clouds || impl_->clouds->noise() != state.clouds->sharedNoise())
     impl_->clouds.emplace(state.clouds->sharedNoise());
-  const sky::SkyTables tables = sky::makeSkyTables(
-      *state.atmosphere, state.scene.place.altitudeM + state.scene.camera.eyeM, state.lights);
-  const gpu::TextureOptions half{.format = gpu::Format::kRgba16F}, full{.format = gpu::Format::kRgba32F};
-  const gpu::Texture2D transmittance(state.atmosphere->transmittance(), half), skyView(tables.skyView, full),
-      keyLight(shading::keyLightTable(state), full);
-  const gpu::Texture3D inscatter(tables.aerialInscatter, full), through(tables.aerialTransmittance, half);
+  impl_->tables.update(state);
   done("tables");
 
   const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state);
@@ -101,15 +99,12 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   setUniforms(p, shading::projectorUniforms(state));
   setUniforms(p, shading::lightVolumeUniforms(layout));
   impl_->clouds->bind(p);
-  p.bind("uTransmittance", transmittance);
-  p.bind("uSkyView", skyView);
-  p.bind("uKeyLight", keyLight);
-  p.bind("uAerialInscatter", inscatter);
-  p.bind("uAerialTransmittance", through);
+  impl_->tables.bind(p);
   p.bind("uLightVolume", impl_->lightVolume.volume());
 
-  const gpu::Texture2D sum(width, height, full);
-  const gpu::Framebuffer target(sum);
+  if (impl_->sum.width() != width || impl_->sum.height() != height)
+    impl_->sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
+  const gpu::Framebuffer target(impl_->sum);
   target.clear();
   // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
   // be rough.
