@@ -13,6 +13,9 @@ install(TARGETS welkin_all EXPORT welkin-targets)
 
 # The packages that the exported targets name, for find_dependency(). A target that is missing here makes tests/install fail.
 set(WELKIN_PACKAGES "Threads glm Erfa OpenEXR PNG Epoxy")
+if(WELKIN_OPENVDB)
+  string(APPEND WELKIN_PACKAGES " Vdb")
+endif()
 
 # <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
 # common a name to stand in <prefix>/include itself.
@@ -28,7 +31,7 @@ configure_package_config_file(
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/welkin-config-version.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES
   "${PROJECT_BINARY_DIR}/welkin-config.cmake" "${PROJECT_BINARY_DIR}/welkin-config-version.cmake"
-  "${PROJECT_SOURCE_DIR}/cmake/FindErfa.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindEpoxy.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/FindErfa.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindEpoxy.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindVdb.cmake"
   DESTINATION "${WELKIN_PACKAGE_DIR}")
 install(EXPORT welkin-targets NAMESPACE welkin:: DESTINATION "${WELKIN_PACKAGE_DIR}")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

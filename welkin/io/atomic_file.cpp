@@ -90,9 +90,7 @@ void AtomicFile::fail(int error) const {
   throw IoError("cannot write " + path_.string() + ": " + std::generic_category().message(error));
 }
 
-void AtomicFile::flush() {
-  const char* bytes = buffer_.data();
-  std::size_t left = buffer_.size();
+void AtomicFile::writeThrough(const char* bytes, std::size_t left) {
   while (left > 0) {
     const ssize_t done = ::write(file_, bytes, left);
     if (done < 0 && errno == EINTR) continue;
@@ -100,13 +98,19 @@ void AtomicFile::flush() {
     bytes += done;
     left -= static_cast<std::size_t>(done);
   }
+}
+
+void AtomicFile::flush() {
+  writeThrough(buffer_.data(), buffer_.size());
   buffer_.clear();
 }
 
 void AtomicFile::write(const void* bytes, std::size_t count) {
   if (buffer_.size() + count > kBufferBytes) flush();
-  buffer_.append(static_cast<const char*>(bytes), count);
-  if (buffer_.size() >= kBufferBytes) flush();
+  if (count >= kBufferBytes)
+    writeThrough(static_cast<const char*>(bytes), count);
+  else
+    buffer_.append(static_cast<const char*>(bytes), count);
   position_ += count;
 }
 

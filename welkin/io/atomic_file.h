@@ -41,6 +41,7 @@ class AtomicFile {
 
  private:
   void flush();
+  void writeThrough(const char* bytes, std::size_t count);
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path path_, final_, temporary_;

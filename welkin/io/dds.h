@@ -2,10 +2,10 @@
 // DirectDraw surfaces (.dds): uncompressed pictures and volumes with mipmaps. "Programming Guide for DDS",
 // Microsoft; the header's fields and DXGI's numbers are from there.
 //
-// Written are, unless the DX10 header is asked for, headers of the old kind, which are what other programs
-// read: L8, A8, L8A8 by masks, colour as BGRA8, volumes with DDSCAPS2_VOLUME, L16 by mask, halves and floats
-// by the numbers 111 (R16F), 113 (RGBA16F), 114 (R32F) and 116 (RGBA32F) in place of a four-character code.
-// R8 and R16 exist with the DX10 header alone: ask for L8 or L16, or for that header.
+// Written are headers of the old kind, which are what other programs read: l8, a8, la8 and l16 by masks,
+// rgba8 as BGRA, volumes with DDSCAPS2_VOLUME, and by the numbers 111, 113, 114 and 116 in place of a
+// four-character code r16f, rgba16f, r32f and rgba32f. With the DX10 header, which few read: r8, r16, rgba16,
+// rgb32f, because only it has them, and on request a8, rgba8, r16f, rgba16f, r32f and rgba32f.
 //
 // Texels stand in the order of texels.h, level after level, the largest first.
 #pragma once
@@ -23,18 +23,20 @@
 namespace welkin::io {
 
 enum class DdsHeader : std::uint8_t {
-  kLegacy,  // what nearly all programs read
-  kDx10,    // with DXGI's number: read by Direct3D's own tools and few others
+  kAuto,  // the old kind, and DX10 for formats that only it can name
+  kDx10,  // with DXGI's number: read by Direct3D's own tools and few others
 };
 
 struct DdsOptions {
-  DdsHeader header = DdsHeader::kLegacy;
+  DdsHeader header = DdsHeader::kAuto;
   MipFilter mipmaps = MipFilter::kNone;
   MipEdges edges = MipEdges::kClamp;
 };
 
 // True if texels of that format can be written with that header.
-bool ddsHolds(TexelFormat format, DdsHeader header);
+bool ddsHolds(TexelFormat format, DdsHeader header = DdsHeader::kAuto);
+// True for the formats that the old kind of header can name.
+bool legacyDdsHolds(TexelFormat format);
 
 // Needs the memory of one slice, and with mipmaps of about 14 slices of floats. Mipmaps need a file that can
 // be sought in. The same texels give the same bytes.
@@ -61,17 +63,14 @@ void writeDds(const std::filesystem::path& path, const Texels& texels, const Dds
 //
 // A header is believed only as far as the file is long: no more memory is asked for than the texels need.
 // Throws IoError with the byte where the trouble is.
-struct DdsLevels {
-  std::vector<Texels> levels;  // the largest first; at least one
-  bool dx10 = false;           // which header it has
-};
-Texels readDds(const std::filesystem::path& path);  // the largest level
-DdsLevels readDdsLevels(const std::filesystem::path& path);
+Texels readDds(const std::filesystem::path& path);                     // the largest level
+std::vector<Texels> readDdsLevels(const std::filesystem::path& path);  // with mipmaps, the largest first
 
 // What the header says, without reading texels.
 struct DdsInfo {
   TexelShape shape;          // as it would be read
-  std::string layout;        // as it is stored: "BGRA8", "L8", "DX10 R8", ...
+  std::string layout;        // as it is stored: "BGRA8", "L8", "R32F", ...
+  bool dx10 = false;         // which header it has
   int levels = 1;            // mipmaps, the largest included
   std::uint64_t offset = 0;  // of the first texel in the file
 };

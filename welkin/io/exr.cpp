@@ -18,6 +18,7 @@
 
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/input_file.h"
 #include "welkin/io/quantise.h"
 
 namespace welkin::io {
@@ -106,37 +107,98 @@ void writeExr(const std::filesystem::path& path, const Image<float>& image, cons
   file.commit();
 }
 
-ExrPicture readExr(const std::filesystem::path& path) {
+namespace {
+
+// The largest sides that are believed. OpenEXR asks for memory by them before it has seen a texel: some 17 MB
+// for a row of chunks that wide.
+constexpr int kLargestSide = 1 << 16;
+constexpr int kRowsAtOnce = 256;  // as many as the largest chunks hold
+
+// Lets OpenEXR count the file's bytes as all readers here do; it is also told where they end.
+class InStream : public Imf::IStream {
+ public:
+  explicit InStream(InputFile& file) : Imf::IStream(file.path().c_str()), file_(file) {}
+  bool read(char out[], int count) override {
+    file_.read(out, static_cast<std::uint64_t>(std::max(count, 0)));
+    return file_.left() > 0;
+  }
+  uint64_t tellg() override { return file_.position(); }
+  void seekg(uint64_t position) override { file_.seek(position); }
+
+ private:
+  InputFile& file_;
+};
+
+// Rows are read and appended chunk by chunk, so that a header that promises more than the file has gets no
+// further than the file goes.
+template <class T>
+void readRows(Imf::InputFile& in, Imf::PixelType type, const Imath::Box2i& window, int channels,
+              std::vector<std::byte>& bytes) {
+  const int width = window.max.x - window.min.x + 1;
+  const std::size_t rowValues = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  std::vector<T> rows;
+  for (int y = window.min.y; y <= window.max.y; y += kRowsAtOnce) {
+    const int last = std::min(y + kRowsAtOnce - 1, window.max.y);
+    rows.resize(rowValues * static_cast<std::size_t>(last - y + 1));
+    // OpenEXR counts from pixel (0, 0), which need not be in the rows at hand; pointers outside an array are
+    // not to be formed, so the sum is done on integers.
+    const std::int64_t offset = (std::int64_t{y} * width + window.min.x) * channels;
+    T* origin = reinterpret_cast<T*>(reinterpret_cast<std::uintptr_t>(rows.data()) -
+                                     static_cast<std::uintptr_t>(offset) * sizeof(T));
+    in.setFrameBuffer(frameBuffer(origin, type, width, channels));
+    in.readPixels(y, last);
+    const auto* begin = reinterpret_cast<const std::byte*>(rows.data());
+    bytes.insert(bytes.end(), begin, begin + rows.size() * sizeof(T));
+  }
+}
+
+}  // namespace
+
+Texels readExrTexels(const std::filesystem::path& path) {
+  InputFile file(path);
   try {
-    Imf::InputFile in(path.c_str(), 0);
+    [[maybe_unused]] static const bool limited =
+        (Imf::Header::setMaxImageSize(kLargestSide, kLargestSide), true);
+    InStream stream(file);
+    Imf::InputFile in(stream, 0);
     const Imf::Header& header = in.header();
     const Imf::ChannelList& list = header.channels();
     const bool rgb = list.findChannel("R") && list.findChannel("G") && list.findChannel("B");
-    if (!rgb && !list.findChannel("Y"))
-      throw IoError("cannot read " + path.string() + ": it has neither RGB nor Y");
+    if (!rgb && !list.findChannel("Y")) file.fail("it has neither RGB nor Y");
+    Texels texels;
+    TexelShape& shape = texels.shape;
+    shape.format.channels = !rgb ? Channels::kL : list.findChannel("A") ? Channels::kRgba : Channels::kRgb;
+    const int channels = countOf(shape.format.channels);
+    bool allHalf = true;
+    for (const std::string& name : channelNames(channels))
+      allHalf = allHalf && list.findChannel(name)->type == Imf::HALF;
+    shape.format.type = allHalf ? ValueType::kHalf : ValueType::kFloat;
     const Imath::Box2i window = header.dataWindow();
-    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
-
-    ExrPicture picture;
-    picture.image = Image<float>(width, height, !rgb ? 1 : list.findChannel("A") ? 4 : 3);
-    picture.half = list.findChannel(rgb ? "R" : "Y")->type == Imf::HALF;
-    // OpenEXR counts from pixel (0, 0), which need not be in the data window; pointers outside an array are
-    // not to be formed, so the sum is done on integers.
-    const std::ptrdiff_t offset =
-        (static_cast<std::ptrdiff_t>(window.min.y) * width + window.min.x) * picture.image.channels;
-    float* origin = reinterpret_cast<float*>(reinterpret_cast<std::uintptr_t>(picture.image.data.data()) -
-                                             static_cast<std::uintptr_t>(offset) * sizeof(float));
-    in.setFrameBuffer(frameBuffer(origin, Imf::FLOAT, width, picture.image.channels));
-    in.readPixels(window.min.y, window.max.y);
+    shape.nx = window.max.x - window.min.x + 1;
+    shape.ny = window.max.y - window.min.y + 1;
+    if (allHalf)
+      readRows<half>(in, Imf::HALF, window, channels, texels.bytes);
+    else
+      readRows<float>(in, Imf::FLOAT, window, channels, texels.bytes);
     for (auto it = header.begin(); it != header.end(); ++it)
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
-        picture.metadata.emplace(it.name(), text->value());
-    return picture;
+        texels.notes.metadata.emplace(it.name(), text->value());
+    return texels;
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
-    throw IoError("cannot read " + path.string() + ": " + e.what());
+    file.fail(e.what());
   }
+}
+
+ExrPicture readExr(const std::filesystem::path& path) {
+  const Texels texels = readExrTexels(path);
+  ExrPicture picture;
+  picture.image = Image<float>(texels.shape.nx, texels.shape.ny, countOf(texels.shape.format.channels));
+  toFloats(texels.shape.format.type, texels.bytes, picture.image.data);
+  picture.half = texels.shape.format.type == ValueType::kHalf;
+  picture.metadata = texels.notes.metadata;
+  return picture;
 }
 
 }  // namespace welkin::io

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "welkin/core/image.h"
+#include "welkin/io/texels.h"
 
 namespace welkin::io {
 
@@ -35,7 +36,10 @@ struct ExrPicture {
   std::map<std::string, std::string> metadata;
 };
 
-// Throws IoError for what is missing, damaged, no EXR, or has neither Y nor R, G and B.
+// Throws IoError for what is missing, damaged, no EXR, has neither Y nor R, G and B, or more than 65536
+// pixels a side (which OpenEXR then refuses in the whole process).
 ExrPicture readExr(const std::filesystem::path& path);
+// The same as it is stored: l, rgb or rgba of halves, or of floats unless all channels are halves.
+Texels readExrTexels(const std::filesystem::path& path);
 
 }  // namespace welkin::io

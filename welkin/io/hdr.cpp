@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/input_file.h"
 #include "welkin/io/quantise.h"
 
 namespace welkin::io {
@@ -92,7 +91,20 @@ class Reader {
     return width >= kShortestCoded && width <= kLongestCoded && left_.size() >= 4 && left_[0] == 2 &&
            left_[1] == 2 && static_cast<std::uint8_t>(left_[2]) < 128;
   }
-  std::size_t size() const { return left_.size(); }
+  // The line of the sizes: width and height.
+  std::pair<int, int> size() {
+    const std::string text = line();
+    constexpr std::string_view kFirst = "-Y ", kSecond = " +X ";
+    int height = 0, width = 0;
+    const char* const end = text.data() + text.size();
+    if (text.starts_with(kFirst)) {
+      const char* at = std::from_chars(text.data() + kFirst.size(), end, height).ptr;
+      if (std::string_view(at, end).starts_with(kSecond)) std::from_chars(at + kSecond.size(), end, width);
+    }
+    if (width < 1 || height < 1) fail("expected a size such as -Y 720 +X 1280");
+    return {width, height};
+  }
+  std::size_t left() const { return left_.size(); }
 
  private:
   std::string_view left_;
@@ -153,21 +165,21 @@ void writeHdr(const std::filesystem::path& path, const Image<float>& image) {
 }
 
 Image<float> readHdr(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) throw IoError("cannot read " + path.string());
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  InputFile file(path);
+  std::string bytes(file.size(), '\0');
+  file.read(bytes.data(), bytes.size());
   Reader in(bytes, path.string());
   if (!in.line().starts_with("#?")) in.fail("this is no Radiance picture");
   bool rgbe = false;
   for (std::string line = in.line(); !line.empty(); line = in.line())
     rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
   if (!rgbe) in.fail("expected FORMAT=32-bit_rle_rgbe");
-  int width = 0, height = 0;
-  if (std::sscanf(in.line().c_str(), "-Y %d +X %d", &height, &width) != 2 || width < 1 || height < 1)
-    in.fail("expected a size such as -Y 720 +X 1280");
-  // The shortest code of a row has 2 bytes for each 127 pixels of a component: a bound on what the sizes may
-  // claim.
-  if (in.size() < static_cast<std::size_t>(height) * (static_cast<std::size_t>(width) / 16))
+  const auto [width, height] = in.size();
+  // What the shortest rows need: a bound on what the sizes may claim.
+  constexpr std::uint64_t kPartHeader = 4, kLongestRun = 127;
+  const std::uint64_t w = static_cast<std::uint64_t>(width), h = static_cast<std::uint64_t>(height);
+  const std::uint64_t coded = kPartHeader + 4 * 2 * ((w + kLongestRun - 1) / kLongestRun);
+  if (in.left() / h < (width >= kShortestCoded && width <= kLongestCoded ? std::min(coded, 4 * w) : 4 * w))
     in.fail("the file is cut short");
 
   Image<float> image(width, height, 3);

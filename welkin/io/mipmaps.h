@@ -42,20 +42,23 @@ std::vector<MipTap> mipTaps(int size, MipFilter filter);
 
 class MipChain {
  public:
-  // `emit(level, z, slice)` is called for each slice of each level >= 1 as soon as it is known, in order of z
-  // but for kRepeat, where the first slices of a volume come last. Levels interleave.
-  using Emit = std::function<void(int level, int z, std::span<const std::byte> slice)>;
+  // Texels come and go in runs: a slice of a volume, a row of a picture, counted from 0. `emit(level, run,
+  // texels)` is called for each run of each level >= 1 as soon as it is known; levels interleave. Runs of a
+  // level come in order, but with kRepeat the first ones, which need the last texels, come last.
+  using Emit = std::function<void(int level, int run, std::span<const std::byte> texels)>;
+  // kBox or kKaiser.
   MipChain(const TexelShape& top, MipFilter filter, MipEdges edges, Emit emit);
   ~MipChain();
 
-  // The next slice of the full level.
-  void addSlice(std::span<const std::byte> slice);
-  // After the last one: emits what was waiting.
-  void finish();
+  // The next run of the full level. With the last one everything has been emitted.
+  void add(std::span<const std::byte> run);
 
  private:
   class Level;
-  std::unique_ptr<Level> first_;
+  TexelShape top_;
+  int runs_ = 0;
+  std::unique_ptr<Level> first_;  // null for a single texel
+  std::vector<float> floats_;
 };
 
 }  // namespace welkin::io

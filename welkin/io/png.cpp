@@ -9,6 +9,7 @@
 #include <bit>
 #include <cerrno>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -50,6 +51,7 @@ void onFlush(png_structp) {}
 
 struct Picture {
   int width, height, channels, bits;
+  unsigned storedBits = 0;  // a pixel in the file
 };
 
 bool encode(png_structp png, png_infop info, const Picture& picture, png_bytepp rows, png_textp texts,
@@ -84,7 +86,6 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   Trouble trouble;
   std::vector<png_bytep> rows;
   rows.reserve(static_cast<std::size_t>(image.height));
-  rows.reserve(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(const_cast<T*>(&image.data[image.index(0, y)])));
   std::vector<png_text> chunks;
@@ -113,30 +114,31 @@ bool decodeHeader(png_structp png, png_infop info, std::FILE* file, Picture* pic
   if (setjmp(png_jmpbuf(png))) return false;
   png_init_io(png, file);
   png_read_info(png, info);
+  const unsigned storedBits = unsigned{png_get_bit_depth(png, info)} * png_get_channels(png, info);
   png_set_expand(png);
   if (png_get_bit_depth(png, info) == 16 && std::endian::native == std::endian::little) png_set_swap(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
   *picture = {static_cast<int>(png_get_image_width(png, info)),
               static_cast<int>(png_get_image_height(png, info)), png_get_channels(png, info),
-              png_get_bit_depth(png, info)};
+              png_get_bit_depth(png, info), storedBits};
   return true;
 }
 
-bool decodeRows(png_structp png, png_bytepp rows) {
+bool decodeRows(png_structp png, png_infop info, png_bytepp rows) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_read_image(png, rows);
-  png_read_end(png, nullptr);
+  png_read_end(png, info);
   return true;
 }
 
 template <class T>
-bool readRows(png_structp png, const Picture& picture, PngImage& out) {
+bool readRows(png_structp png, png_infop info, const Picture& picture, PngImage& out) {
   Image<T> image(picture.width, picture.height, picture.channels);
   std::vector<png_bytep> rows;
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(&image.data[image.index(0, y)]));
-  if (!decodeRows(png, rows.data())) return false;
+  if (!decodeRows(png, info, rows.data())) return false;
   out = std::move(image);
   return true;
 }
@@ -150,7 +152,7 @@ void writePng(const std::filesystem::path& path, const Image<std::uint16_t>& ima
   write(path, image, texts);
 }
 
-PngImage readPng(const std::filesystem::path& path) {
+PngImage readPng(const std::filesystem::path& path, PngTexts* texts) {
   const auto fail = [&](const std::string& why) {
     throw IoError("cannot read " + path.string() + ": " + why);
   };
@@ -167,10 +169,22 @@ PngImage readPng(const std::filesystem::path& path) {
   if (!decoder.info) fail("libpng does not start");
   Picture picture{};
   if (!decodeHeader(decoder.png, decoder.info, file.get(), &picture)) fail(trouble.message);
+  // Deflate never does better than 1 : 1032, so that a header cannot ask for more memory than a file of this
+  // length could fill.
+  constexpr std::uint64_t kBestDeflate = 1032;
+  std::error_code error;
+  const std::uint64_t rowBytes = (static_cast<std::uint64_t>(picture.width) * picture.storedBits + 7) / 8;
+  const std::uint64_t fileBytes = std::filesystem::file_size(path, error);
+  if (error || fileBytes * kBestDeflate / static_cast<std::uint64_t>(picture.height) < rowBytes)
+    fail("the file is cut short: " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+         " pixels do not fit in its " + std::to_string(fileBytes) + " bytes");
   PngImage image;
-  const bool good = picture.bits == 16 ? readRows<std::uint16_t>(decoder.png, picture, image)
-                                       : readRows<std::uint8_t>(decoder.png, picture, image);
+  const bool good = picture.bits == 16 ? readRows<std::uint16_t>(decoder.png, decoder.info, picture, image)
+                                       : readRows<std::uint8_t>(decoder.png, decoder.info, picture, image);
   if (!good) fail(trouble.message);
+  png_textp found = nullptr;
+  if (const int count = png_get_text(decoder.png, decoder.info, &found, nullptr); texts)
+    for (int i = 0; i < count; ++i) texts->emplace(found[i].key, found[i].text);
   return image;
 }
 

@@ -23,8 +23,9 @@ void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& imag
 void writePng(const std::filesystem::path& path, const Image<std::uint16_t>& image,
               const PngTexts& texts = {});
 
-// Palettes and fewer bits are expanded to 8. Throws IoError for what is missing, damaged or no PNG.
+// Palettes and fewer bits are expanded to 8. `texts` gets the texts if it is not null. Throws IoError for
+// what is missing, damaged or no PNG.
 using PngImage = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
-PngImage readPng(const std::filesystem::path& path);
+PngImage readPng(const std::filesystem::path& path, PngTexts* texts = nullptr);
 
 }  // namespace welkin::io

@@ -38,8 +38,7 @@ class RawWriter : public TexelWriter {
 void writeRaw(const std::filesystem::path& path, const Texels& texels);
 
 // `path` is that of the texels or of the side file. The texels' file must have exactly the size that the side
-// file says, which is checked before memory is asked for. Throws IoError; ParseError for a side file that is
-// no JSON; both with the place.
+// file says, which is checked before memory is asked for. Throws IoError with the place, also for no JSON.
 Texels readRaw(const std::filesystem::path& path);
 
 }  // namespace welkin::io

@@ -26,11 +26,12 @@ enum class TexelFileKind : std::uint8_t { kPng, kExr, kHdr, kDds, kRaw, kVdb };
 // By extension; "x.raw.json" is RAW. Throws ParameterError that names the known ones.
 TexelFileKind texelFileKindOf(const std::filesystem::path& path);
 
-// True if texels of that shape can be written to that kind as they are, for VDB after the conversion above.
+// True if texels of that shape can be handed to a writer of that kind.
 bool holds(TexelFileKind kind, const TexelShape& shape, const DdsOptions& dds = {});
 
 // What comes nearest to the shape's format without losing anything, or nothing if there is none: a picture of
-// rgb8 becomes rgba8 in a DDS, a volume of l8 becomes r16f in a VDB.
+// rgb8 becomes rgba8 in a DDS, one of r32f becomes l32f in an EXR. In a DDS names that more programs read go
+// before: r8 becomes l8.
 std::optional<TexelFormat> nearestFormat(TexelFileKind kind, const TexelShape& shape,
                                          const DdsOptions& dds = {});
 

@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <map>
@@ -17,6 +18,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "welkin/core/image.h"
 
 namespace welkin::io {
 
@@ -100,8 +103,28 @@ struct Texels {
 void toFloats(ValueType type, std::span<const std::byte> values, std::span<float> floats);
 void fromFloats(std::span<const float> floats, ValueType type, std::span<std::byte> values);
 
+// "texel (3, 4)", "texel (3, 4, 5), channel 1": where the value of that number is, for messages.
+std::string texelPlace(const TexelShape& shape, std::size_t value);
+
 // Throws IoError that names the first texel with a NaN or an infinity, and its byte in the file if the texels
 // begin at `fileOffset` there (-1: not known).
 void requireFinite(const Texels& texels, const std::filesystem::path& path, std::int64_t fileOffset = -1);
+
+// The same values as texels, copied. A volume's number of channels must be that of `channels`, as a
+// picture's.
+template <class T>
+Texels toTexels(const Image<T>& image, TexelFormat format) {
+  assert(sizeof(T) == bytesOf(format.type) && image.channels == countOf(format.channels));
+  Texels texels(TexelShape{format, image.width, image.height, 1, false});
+  std::memcpy(texels.bytes.data(), image.data.data(), texels.bytes.size());
+  return texels;
+}
+template <class T>
+Texels toTexels(const Volume<T>& volume, TexelFormat format) {
+  assert(sizeof(T) == bytesOf(format.type) && volume.channels == countOf(format.channels));
+  Texels texels(TexelShape{format, volume.nx, volume.ny, volume.nz, true});
+  std::memcpy(texels.bytes.data(), volume.data.data(), texels.bytes.size());
+  return texels;
+}
 
 }  // namespace welkin::io

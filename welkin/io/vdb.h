@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenVDB (.vdb): a volume of one value a voxel as a sparse grid of floats, stored as floats or halves (K.
 // Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology"). Optional: without it (CMake's
-// WELKIN_OPENVDB) every function but hasVdb() throws IoError that says so.
+// WELKIN_OPENVDB) the writer and readVdb() throw IoError that says so.
 //
 // A grid's transform maps voxel (i, j, k) to the metres of its centre: voxel size and the first voxel's place
 // along the axes of texels.h, no rotation. Zero is the background; voxels of exactly zero are not stored. The

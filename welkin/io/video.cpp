@@ -22,16 +22,10 @@
 
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/file_extension.h"
 
 namespace welkin::io {
 namespace {
-
-std::string lowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return extension;
-}
 
 class FileDescriptor {
  public:

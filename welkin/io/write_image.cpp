@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/io/write_image.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "welkin/core/error.h"
 #include "welkin/io/exr.h"
+#include "welkin/io/file_extension.h"
 #include "welkin/io/hdr.h"
 #include "welkin/io/png.h"
 #include "welkin/io/quantise.h"
@@ -13,9 +13,7 @@
 namespace welkin::io {
 
 ImageFormat imageFormatOf(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string extension = lowerExtension(path);
   if (extension == ".png") return ImageFormat::kPng;
   if (extension == ".exr") return ImageFormat::kExr;
   if (extension == ".hdr") return ImageFormat::kHdr;

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+# Finds OpenVDB (https://www.openvdb.org), whose own module is not on CMake's path in Debian and asks for more of Boost than its
+# headers need. Defines the target Vdb::vdb. Imath's Half comes with OpenEXR. Installed beside welkin-config.cmake, since whoever
+# links Welkin links OpenVDB too.
+find_path(Vdb_INCLUDE_DIR openvdb/openvdb.h)
+find_library(Vdb_LIBRARY openvdb)
+mark_as_advanced(Vdb_INCLUDE_DIR Vdb_LIBRARY)
+find_package(TBB QUIET CONFIG)
+find_package(OpenEXR QUIET CONFIG)
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Vdb REQUIRED_VARS Vdb_LIBRARY Vdb_INCLUDE_DIR TBB_FOUND OpenEXR_FOUND)
+
+if(Vdb_FOUND AND NOT TARGET Vdb::vdb)
+  add_library(Vdb::vdb UNKNOWN IMPORTED)
+  set_target_properties(Vdb::vdb PROPERTIES
+    IMPORTED_LOCATION "${Vdb_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${Vdb_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES "TBB::tbb;OpenEXR::OpenEXR")
+endif()

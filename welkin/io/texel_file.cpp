@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/io/texel_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "welkin/core/error.h"
+#include "welkin/io/exr.h"
+#include "welkin/io/file_extension.h"
+#include "welkin/io/hdr.h"
+#include "welkin/io/png.h"
+#include "welkin/io/raw.h"
+#include "welkin/io/vdb.h"
+
+namespace welkin::io {
+namespace {
+
+constexpr std::array<Channels, 6> kAllChannels = {Channels::kL,  Channels::kR,   Channels::kA,
+                                                  Channels::kLa, Channels::kRgb, Channels::kRgba};
+
+bool isInteger(ValueType type) {
+  return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;
+}
+
+template <class T>
+Image<T> toImage(const Texels& texels) {
+  Image<T> image(texels.shape.nx, texels.shape.ny, countOf(texels.shape.format.channels));
+  std::memcpy(image.data.data(), texels.bytes.data(), texels.bytes.size());
+  return image;
+}
+
+Image<float> toFloatImage(const Texels& texels) {
+  Image<float> image(texels.shape.nx, texels.shape.ny, countOf(texels.shape.format.channels));
+  toFloats(texels.shape.format.type, texels.bytes, image.data);
+  return image;
+}
+
+void requirePositive(const std::filesystem::path& path, const Image<float>& image, const TexelShape& shape) {
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    if (image.data[i] < 0.0f)
+      throw ParameterError("cannot write " + path.string() + ": " + texelPlace(shape, i) +
+                           " is negative, which an HDR picture cannot hold");
+}
+
+// Pictures whose formats are written in one piece.
+class PictureWriter : public TexelWriter {
+ public:
+  PictureWriter(std::filesystem::path path, TexelFileKind kind, const TexelShape& shape,
+                const TexelNotes& notes)
+      : path_(std::move(path)), kind_(kind) {
+    texels_.shape = shape;
+    texels_.notes = notes;
+    texels_.bytes.reserve(shape.bytes());
+  }
+  void write(std::span<const std::byte> rows) override {
+    texels_.bytes.insert(texels_.bytes.end(), rows.begin(), rows.end());
+  }
+  void close() override {
+    assert(texels_.bytes.size() == texels_.shape.bytes());
+    const ValueType type = texels_.shape.format.type;
+    if (kind_ == TexelFileKind::kHdr) {
+      const Image<float> image = toFloatImage(texels_);
+      requirePositive(path_, image, texels_.shape);
+      writeHdr(path_, image);
+    } else if (kind_ == TexelFileKind::kExr) {
+      writeExr(path_, toFloatImage(texels_),
+               {.depth = type == ValueType::kHalf ? ExrDepth::kHalf : ExrDepth::kFloat,
+                .metadata = texels_.notes.metadata});
+    } else if (type == ValueType::kUnorm8) {
+      writePng(path_, toImage<std::uint8_t>(texels_), texels_.notes.metadata);
+    } else {
+      writePng(path_, toImage<std::uint16_t>(texels_), texels_.notes.metadata);
+    }
+  }
+
+ private:
+  std::filesystem::path path_;
+  TexelFileKind kind_;
+  Texels texels_;
+};
+
+Texels readPngTexels(const std::filesystem::path& path) {
+  PngTexts texts;
+  const PngImage png = readPng(path, &texts);
+  constexpr std::array<Channels, 5> kByCount = {Channels::kL, Channels::kL, Channels::kLa, Channels::kRgb,
+                                                Channels::kRgba};
+  Texels texels = std::visit(
+      [&]<class T>(const Image<T>& image) {
+        return toTexels(image, {kByCount[static_cast<std::size_t>(image.channels)],
+                                sizeof(T) == 1 ? ValueType::kUnorm8 : ValueType::kUnorm16});
+      },
+      png);
+  texels.notes.metadata = std::move(texts);
+  return texels;
+}
+
+}  // namespace
+
+TexelFileKind texelFileKindOf(const std::filesystem::path& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".png") return TexelFileKind::kPng;
+  if (extension == ".exr") return TexelFileKind::kExr;
+  if (extension == ".hdr") return TexelFileKind::kHdr;
+  if (extension == ".dds") return TexelFileKind::kDds;
+  if (extension == ".raw") return TexelFileKind::kRaw;
+  if (extension == ".vdb") return TexelFileKind::kVdb;
+  if (extension == ".json" && lowerExtension(path.stem()) == ".raw") return TexelFileKind::kRaw;
+  throw ParameterError(
+      path.string() + ": " +
+      (extension.empty() ? "no extension" : "unknown extension " + path.extension().string()) +
+      "; expected .png, .exr, .hdr, .dds, .raw or .vdb");
+}
+
+bool holds(TexelFileKind kind, const TexelShape& shape, const DdsOptions& dds) {
+  const auto [channels, type] = shape.format;
+  switch (kind) {
+    case TexelFileKind::kPng:
+      return !shape.volume && isInteger(type) && channels != Channels::kA && channels != Channels::kR;
+    case TexelFileKind::kExr:
+      return !shape.volume && !isInteger(type) &&
+             (channels == Channels::kL || channels == Channels::kRgb || channels == Channels::kRgba);
+    case TexelFileKind::kHdr:
+      return !shape.volume && type == ValueType::kFloat && channels == Channels::kRgb;
+    case TexelFileKind::kDds:
+      return ddsHolds(shape.format, dds.header);
+    case TexelFileKind::kRaw:
+      return true;
+    case TexelFileKind::kVdb:
+      return shape.volume && countOf(channels) == 1;
+  }
+  return false;
+}
+
+std::optional<TexelFormat> nearestFormat(TexelFileKind kind, const TexelShape& shape, const DdsOptions& dds) {
+  const auto [channels, type] = shape.format;
+  // In this order: as it is; another name of the same channels; more channels; and each with the smallest
+  // type that loses nothing.
+  std::vector<TexelFormat> candidates;
+  for (const ValueType t : {ValueType::kUnorm8, ValueType::kUnorm16, ValueType::kHalf, ValueType::kFloat}) {
+    if (t != type && t != ValueType::kFloat && type != ValueType::kUnorm8) continue;  // would lose something
+    const std::size_t before = candidates.size();
+    candidates.push_back({channels, t});
+    for (const Channels c : kAllChannels) {
+      const bool losesAlpha = (channels == Channels::kLa || channels == Channels::kRgba) &&
+                              c != Channels::kLa && c != Channels::kRgba;
+      const bool losesColour = countOf(channels) >= 3 && countOf(c) < 3;
+      if (c != channels && !losesAlpha && !losesColour) candidates.push_back({c, t});
+    }
+    if (kind == TexelFileKind::kDds &&
+        dds.header == DdsHeader::kAuto)  // a name that more programs read goes before
+      std::stable_partition(
+          candidates.begin() + static_cast<std::ptrdiff_t>(before), candidates.end(),
+          [&](TexelFormat f) { return countOf(f.channels) == countOf(channels) && legacyDdsHolds(f); });
+  }
+  for (const TexelFormat f : candidates) {
+    TexelShape s = shape;
+    s.format = f;
+    if (holds(kind, s, dds)) return f;
+  }
+  return std::nullopt;
+}
+
+std::unique_ptr<TexelWriter> createTexelFile(const std::filesystem::path& path, const TexelShape& shape,
+                                             const TexelNotes& notes, const DdsOptions& dds) {
+  validate(shape);
+  const TexelFileKind kind = texelFileKindOf(path);
+  if (!holds(kind, shape, dds))
+    throw ParameterError("cannot write " + path.string() + ": " + path.extension().string() + " holds no " +
+                         (shape.volume ? "volume of " : "picture of ") + nameOf(shape.format));
+  switch (kind) {
+    case TexelFileKind::kDds:
+      return std::make_unique<DdsWriter>(path, shape, dds);
+    case TexelFileKind::kRaw:
+      return std::make_unique<RawWriter>(path, shape, notes);
+    case TexelFileKind::kVdb:
+      return std::make_unique<VdbWriter>(path, shape, notes);
+    default:
+      return std::make_unique<PictureWriter>(path, kind, shape, notes);
+  }
+}
+
+void writeTexels(const std::filesystem::path& path, const Texels& texels, const DdsOptions& dds) {
+  const auto writer = createTexelFile(path, texels.shape, texels.notes, dds);
+  writer->write(texels.bytes);
+  writer->close();
+}
+
+Texels readTexels(const std::filesystem::path& path) {
+  Texels texels;
+  switch (texelFileKindOf(path)) {
+    case TexelFileKind::kPng:
+      return readPngTexels(path);
+    case TexelFileKind::kExr:
+      texels = readExrTexels(path);
+      requireFinite(texels, path);
+      return texels;
+    case TexelFileKind::kHdr:
+      return toTexels(readHdr(path), {Channels::kRgb, ValueType::kFloat});
+    case TexelFileKind::kDds:
+      return readDds(path);
+    case TexelFileKind::kRaw:
+      return readRaw(path);
+    case TexelFileKind::kVdb:
+      break;
+  }
+  return readVdb(path);
+}
+
+}  // namespace welkin::io
