@@ -105,6 +105,21 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       ->group("Running");
 }
 
+void describeConvert(CLI::App* app, ConvertArgs& a) {
+  app->add_option("in", a.in, "picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
+      ->type_name("IN");
+  app->add_option("out", a.out, "the same")->type_name("OUT");
+  add(app, "--format", a.format, "FORMAT",
+      "a, l, r, la, rgb or rgba and then 8, 16 (integers), 16f (halves) or 32f (floats), as in l8 or rgba16f "
+      "(default: what loses nothing)");
+  add(app, "--mipmaps", a.mipmaps, "none|box|kaiser", "of .dds (default none)");
+  add(app, "--edges", a.edges, "clamp|repeat",
+      "what mipmaps find beyond the border: the border itself, or for textures that tile the other side "
+      "(default clamp)");
+  add(app, "--header", a.header, "auto|dx10",
+      "of .dds; auto: the old kind, which most programs read, unless only DX10 has the format");
+}
+
 // Names that one may have meant: "--flag" of this command, or commands.
 std::vector<std::string> flagNames(const CLI::App* app) {
   std::vector<std::string> names;
@@ -164,10 +179,18 @@ Command parseCommandLine(int argc, const char* const* argv) {
   sunApp->add_flag("--json", sun.json, "one JSON object");
 
   InfoArgs info;
-  CLI::App* infoApp =
-      root.add_subcommand("info", "Say what a file holds: a scene file with all its defaults, or a picture");
-  infoApp->add_option("file", info.file, "scene file .toml, or picture .png .exr .hdr")->type_name("FILE");
+  CLI::App* infoApp = root.add_subcommand(
+      "info", "Say what a file holds: a scene file with all its defaults, or a picture or volume");
+  infoApp
+      ->add_option("file", info.file,
+                   "scene file .toml, picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
+      ->type_name("FILE");
   infoApp->add_flag("--json", info.json, "as JSON");
+
+  ConvertArgs convert;
+  CLI::App* convertApp = root.add_subcommand(
+      "convert", "Write a picture or volume as another kind of file; nothing is lost unasked");
+  describeConvert(convertApp, convert);
 
   Flag topic;
   HelpSceneArgs helpScene;
@@ -191,7 +214,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
   const auto chosen = root.get_subcommands();
   refuseExtras(&root, "");
   if (chosen.empty())
-    throw UsageError("expected a command: render, metar, sun, info or help; welkin --help explains them");
+    throw UsageError(
+        "expected a command: render, metar, sun, info, convert or help; welkin --help explains them");
   refuseExtras(chosen[0], chosen[0]->get_name());
   if (chosen[0] == renderApp) return render;
   if (chosen[0] == metarApp) return metar;
@@ -200,6 +224,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
     if (info.file.empty()) throw UsageError("info: expected a file");
     return info;
   }
+  if (chosen[0] == convertApp) return convert;
   if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};
   if (*topic == "scene") return helpScene;
   std::vector<std::string> topics{"scene"};

@@ -38,6 +38,11 @@ struct InfoArgs {
   bool json = false;
 };
 
+struct ConvertArgs {
+  std::string in, out;
+  Flag format, mipmaps, edges, header;
+};
+
 // `welkin help scene`; help of commands is PrintText.
 struct HelpSceneArgs {
   bool markdown = false;
@@ -47,7 +52,7 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, HelpSceneArgs, PrintText>;
+using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, ConvertArgs, HelpSceneArgs, PrintText>;
 
 // Throws UsageError, which names the nearest command or flag for one that does not exist.
 Command parseCommandLine(int argc, const char* const* argv);

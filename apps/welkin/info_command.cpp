@@ -4,15 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <map>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "usage_error.h"
-#include "welkin/io/exr.h"
-#include "welkin/io/hdr.h"
-#include "welkin/io/png.h"
-#include "welkin/io/write_image.h"
+#include "welkin/io/texel_file.h"
+#include "welkin/io/vdb.h"
 #include "welkin/scene/param_json.h"
 #include "welkin/scene/scene_file.h"
 
@@ -20,44 +19,75 @@ namespace welkin::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using io::TexelFileKind;
+using io::ValueType;
 
-template <class T>
-Json pictureJson(const Image<T>& image, const char* valueType, const char* meaning) {
-  Json j = {{"width", image.width},
-            {"height", image.height},
-            {"channels", image.channels},
-            {"values", valueType},
-            {"meaning", meaning}};
-  if (image.data.empty()) return j;
-  const auto [low, high] = std::minmax_element(image.data.begin(), image.data.end());
-  double sum = 0.0;
-  for (const T x : image.data) sum += static_cast<double>(x);
-  j["min"] = *low;
-  j["mean"] = sum / static_cast<double>(image.data.size());
-  j["max"] = *high;
-  return j;
+const char* valuesOf(TexelFileKind kind, ValueType type) {
+  if (kind == TexelFileKind::kHdr) return "rgbe";
+  switch (type) {
+    case ValueType::kUnorm8:
+      return "8 bits";
+    case ValueType::kUnorm16:
+      return "16 bits";
+    case ValueType::kHalf:
+      return "half";
+    default:
+      return "float";
+  }
 }
 
-constexpr const char* kScreen = "sRGB";
-constexpr const char* kLuminance = "linear Rec. 709, cd/m2";
-
-Json pictureJson(const std::string& path) {
-  switch (io::imageFormatOf(path)) {
-    case io::ImageFormat::kExr: {
-      const io::ExrPicture p = io::readExr(path);
-      Json j = pictureJson(p.image, p.half ? "half" : "float", kLuminance);
-      j["metadata"] = p.metadata;
-      return j;
-    }
-    case io::ImageFormat::kHdr:
-      return pictureJson(io::readHdr(path), "rgbe", kLuminance);
-    case io::ImageFormat::kPng:
-      break;
+// Integers in their own range, as they stand in the file.
+void addStatistics(Json& j, const io::Texels& texels) {
+  const ValueType type = texels.shape.format.type;
+  const double one = type == ValueType::kUnorm8 ? 255.0 : type == ValueType::kUnorm16 ? 65535.0 : 1.0;
+  double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0;
+  std::vector<float> row(texels.shape.rowBytes() / io::bytesOf(type));
+  for (std::size_t at = 0; at < texels.bytes.size(); at += texels.shape.rowBytes()) {
+    io::toFloats(type, std::span(texels.bytes).subspan(at, texels.shape.rowBytes()), row);
+    double rowSum = 0.0;
+    for (const float x : row) rowSum += static_cast<double>(x);
+    const auto [least, most] = std::minmax_element(row.begin(), row.end());
+    low = std::min(low, static_cast<double>(*least));
+    high = std::max(high, static_cast<double>(*most));
+    sum += rowSum;
   }
-  const io::PngImage image = io::readPng(path);
-  if (const auto* bytes = std::get_if<Image<std::uint8_t>>(&image))
-    return pictureJson(*bytes, "8 bits", kScreen);
-  return pictureJson(std::get<Image<std::uint16_t>>(image), "16 bits", kScreen);
+  const auto stored = [&](double x) {
+    return one == 1.0 ? Json(static_cast<float>(x)) : Json(static_cast<int>(std::lround(x * one)));
+  };
+  j["min"] = stored(low);
+  j["mean"] = one * sum / (static_cast<double>(texels.bytes.size()) / static_cast<double>(io::bytesOf(type)));
+  j["max"] = stored(high);
+}
+
+Json texelsJson(const std::string& path) {
+  const TexelFileKind kind = io::texelFileKindOf(path);
+  const io::Texels texels = io::readTexels(path);
+  const io::TexelShape& shape = texels.shape;
+  Json j = {{"width", shape.nx}, {"height", shape.ny}};
+  if (shape.volume) j["depth"] = shape.nz;
+  j["channels"] = io::countOf(shape.format.channels);
+  j["values"] = valuesOf(kind, shape.format.type);
+  j["format"] = io::nameOf(shape.format);
+  if (kind == TexelFileKind::kPng) j["meaning"] = "sRGB";
+  if (kind == TexelFileKind::kExr || kind == TexelFileKind::kHdr) j["meaning"] = "linear Rec. 709, cd/m2";
+  if (kind == TexelFileKind::kDds) {
+    const io::DdsInfo dds = io::readDdsInfo(path);
+    j["layout"] = dds.layout;
+    j["header"] = dds.dx10 ? "DX10" : "legacy";
+    j["levels"] = dds.levels;
+  }
+  addStatistics(j, texels);
+  if (shape.volume && kind != TexelFileKind::kDds) {
+    const io::TexelNotes& notes = texels.notes;
+    j["voxel_size_m"] = {notes.voxelSizeM.x, notes.voxelSizeM.y, notes.voxelSizeM.z};
+    j["first_voxel_m"] = {notes.firstVoxelM.x, notes.firstVoxelM.y, notes.firstVoxelM.z};
+    j["name"] = notes.name;
+  }
+  if (kind == TexelFileKind::kVdb)
+    for (const io::VdbGrid& grid : io::readVdbGrids(path))
+      j["grids"].push_back({{"name", grid.name}, {"type", grid.type}, {"half", grid.half}});
+  if (kind != TexelFileKind::kDds && kind != TexelFileKind::kHdr) j["metadata"] = texels.notes.metadata;
+  return j;
 }
 
 void printPlain(const Json& j, int indent = 0) {
@@ -67,7 +97,8 @@ void printPlain(const Json& j, int indent = 0) {
       fmt::print("\n");
       printPlain(value, indent + 2);
     } else {
-      fmt::print(" {}\n", value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print(" {}\n", value.is_string() ? value.get<std::string>()
+                                            : value.dump(-1, ' ', false, Json::error_handler_t::replace));
     }
   }
 }
@@ -83,11 +114,12 @@ int runInfo(const InfoArgs& args) {
     return 0;
   }
   try {
-    io::imageFormatOf(args.file);
+    io::texelFileKindOf(args.file);
   } catch (const ParameterError&) {
-    throw UsageError("info: " + args.file + ": unknown kind of file; expected .toml, .png, .exr or .hdr");
+    throw UsageError("info: " + args.file +
+                     ": unknown kind of file; expected .toml, .png, .exr, .hdr, .dds, .raw or .vdb");
   }
-  const Json j = pictureJson(args.file);
+  const Json j = texelsJson(args.file);
   if (args.json)
     fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
   else

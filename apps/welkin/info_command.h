@@ -7,8 +7,9 @@
 namespace welkin::app {
 
 // Prints to standard output: a scene file (.toml) with every default and typical value filled in; of a
-// picture (.png, .exr, .hdr) its size, channels, range of values and what it says about itself. Returns the
-// exit code. Throws ParseError and IoError for what cannot be read, UsageError for other kinds of file.
+// picture or volume (.png, .exr, .hdr, .dds, .raw, .vdb) its size, channels, range of values and what it says
+// about itself. Returns the exit code. Throws ParseError and IoError for what cannot be read, UsageError for
+// other kinds of file.
 int runInfo(const InfoArgs& args);
 
 }  // namespace welkin::app

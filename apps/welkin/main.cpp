@@ -9,6 +9,7 @@
 #include <new>
 
 #include "command_line.h"
+#include "convert_command.h"
 #include "help_command.h"
 #include "info_command.h"
 #include "metar_command.h"
@@ -26,6 +27,9 @@ int run(const RenderArgs& args) {
 }
 int run(const InfoArgs& args) {
   return runInfo(args);
+}
+int run(const ConvertArgs& args) {
+  return runConvert(args);
 }
 int run(const HelpSceneArgs& args) {
   return runHelpScene(args);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/io/vdb_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -178,7 +179,7 @@ class TreeCheck {
       file_.skip(4);
       const auto plain = file_.get<std::uint32_t>(), block = file_.get<std::uint32_t>(),
                  packed = file_.get<std::uint32_t>();
-      if (plain != bytes || packed != length || block == 0 || block > bytes)
+      if (plain != bytes || packed != length || block == 0 || block > std::max<std::uint64_t>(bytes, 1))
         fail("a chunk whose header is wrong");
     }
     file_.seek(end);
