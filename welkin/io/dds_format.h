@@ -26,7 +26,7 @@ constexpr std::uint32_t kAlphaPixels = 0x1, kAlpha = 0x2, kFourCc = 0x4, kRgb = 
 struct Header {  // follows the magic number
   std::uint32_t size = 124, flags = 0, height = 0, width = 0, pitch = 0, depth = 0, levels = 1;
   std::array<std::uint32_t, 11> reserved{};
-  PixelFormat format;
+  PixelFormat format{};
   std::array<std::uint32_t, 4> caps{};
   std::uint32_t reserved2 = 0;
 };

@@ -221,14 +221,15 @@ Contents readContents(InputFile& file) {
     const std::uint64_t at = file.position();
     const std::string sharedTree = readText(file);
     if (!sharedTree.empty()) entry.type = "shared";  // an instance of another grid's tree
-    if (!offsets) {
-      entry.gridByte = file.position();
-      contents.grids.push_back(entry);
-      break;
-    }
     entry.gridByte = file.get<std::uint64_t>();
     entry.bufferByte = file.get<std::uint64_t>();
     const auto end = file.get<std::uint64_t>();
+    if (!offsets) {  // written to a stream: they are zero, and the grid follows
+      entry.gridByte = file.position();
+      entry.bufferByte = 0;
+      contents.grids.push_back(entry);
+      break;
+    }
     if (entry.gridByte < file.position() || entry.bufferByte < entry.gridByte || end < entry.bufferByte ||
         end > file.size())
       file.fail("the file is cut short or its table of contents is wrong", at);

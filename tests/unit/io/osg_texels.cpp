@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What OpenSceneGraph makes of an image file: `osg_texels FILE` prints size, kind of texel and the bytes of
-// the largest level in hexadecimal, x fastest, then y from the file's first row, then z.
+// all levels in hexadecimal, as OpenSceneGraph would hand them to OpenGL.
 #include <osg/GL>
 #include <osg/Image>
 #include <osgDB/ReadFile>
@@ -38,14 +38,11 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(argv[1]);
   if (!image) return 1;
-  std::printf("%dx%dx%d %s %u-bit %u levels:", image->s(), image->t(), image->r(),
+  std::printf("%dx%dx%d %s %u-bit %u levels: ", image->s(), image->t(), image->r(),
               nameOf(image->getPixelFormat()),
               osg::Image::computePixelSizeInBits(image->getPixelFormat(), image->getDataType()),
               image->getNumMipmapLevels());
-  for (int z = 0; z < image->r(); ++z)
-    for (int y = 0; y < image->t(); ++y) {
-      const unsigned char* row = image->data(0, static_cast<unsigned>(y), static_cast<unsigned>(z));
-      for (unsigned i = 0; i < image->getRowSizeInBytes(); ++i) std::printf("%02x", row[i]);
-    }
+  for (unsigned i = 0; i < image->getTotalSizeInBytesIncludingMipmaps(); ++i)
+    std::printf("%02x", image->data()[i]);
   std::printf("\n");
 }
