@@ -15,5 +15,7 @@ if(Vdb_FOUND AND NOT TARGET Vdb::vdb)
   add_library(Vdb::vdb UNKNOWN IMPORTED)
   set_target_properties(Vdb::vdb PROPERTIES
     IMPORTED_LOCATION "${Vdb_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${Vdb_INCLUDE_DIR}"
-    INTERFACE_LINK_LIBRARIES "TBB::tbb;OpenEXR::OpenEXR")
+    INTERFACE_LINK_LIBRARIES "TBB::tbb;OpenEXR::OpenEXR"
+    # Boost 1.74, which OpenVDB's headers include, gives an enumeration a value out of its range, which clang takes for an error.
+    INTERFACE_COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:Clang>:-Wno-enum-constexpr-conversion>")
 endif()

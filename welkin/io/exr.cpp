@@ -13,6 +13,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -109,10 +110,85 @@ void writeExr(const std::filesystem::path& path, const Image<float>& image, cons
 
 namespace {
 
-// The largest sides that are believed. OpenEXR asks for memory by them before it has seen a texel: some 17 MB
-// for a row of chunks that wide.
+// OpenEXR asks for memory by what a header says before it has seen a texel: for attributes by their length,
+// for rows of chunks and for tiles by their sizes. So the header is walked here first ("The OpenEXR file
+// layout"): attributes must fit in the file, and no side may be longer than this.
 constexpr int kLargestSide = 1 << 16;
+constexpr std::int64_t kLargestTile = 1 << 22;
 constexpr int kRowsAtOnce = 256;  // as many as the largest chunks hold
+
+std::string readName(InputFile& file) {
+  constexpr std::size_t kLongestName = 255;
+  std::string name;
+  for (char c = file.get<char>(); c != '\0'; c = file.get<char>()) {
+    name += c;
+    if (name.size() > kLongestName) file.fail("a name of more than 255 bytes", file.position());
+  }
+  return name;
+}
+
+// Bytes of attributes of one size. OpenEXR reads that many whatever length the file states, and would then
+// take bytes of a value for the next name.
+const std::map<std::string, std::uint32_t> kFixedSizes = {{"box2f", 16},
+                                                          {"box2i", 16},
+                                                          {"chromaticities", 32},
+                                                          {"compression", 1},
+                                                          {"deepImageState", 1},
+                                                          {"double", 8},
+                                                          {"envmap", 1},
+                                                          {"float", 4},
+                                                          {"int", 4},
+                                                          {"keycode", 28},
+                                                          {"lineOrder", 1},
+                                                          {"m33d", 72},
+                                                          {"m33f", 36},
+                                                          {"m44d", 128},
+                                                          {"m44f", 64},
+                                                          {"rational", 8},
+                                                          {"tiledesc", 9},
+                                                          {"timecode", 8},
+                                                          {"v2d", 16},
+                                                          {"v2f", 8},
+                                                          {"v2i", 8},
+                                                          {"v3d", 24},
+                                                          {"v3f", 12},
+                                                          {"v3i", 12}};
+
+void checkHeader(InputFile& file) {
+  constexpr std::uint32_t kMagic = 20000630, kManyParts = 0x1000;
+  if (file.size() < 8 || file.get<std::uint32_t>() != kMagic) file.fail("this is no EXR picture", 0);
+  if ((file.get<std::uint32_t>() & kManyParts) != 0)
+    file.fail("it has several parts; expected one picture", 4);
+  const auto sane = [](std::int64_t from, std::int64_t to) { return to >= from && to - from < kLargestSide; };
+  for (std::string name = readName(file); !name.empty(); name = readName(file)) {
+    const std::string type = readName(file);
+    const std::uint64_t at = file.position();
+    const auto bytes = file.get<std::uint32_t>();
+    const std::uint64_t end = file.position() + bytes;
+    if (bytes > file.left()) file.fail("attribute " + name + " is longer than the file", at);
+    const auto fixed = kFixedSizes.find(type);
+    bool right = fixed == kFixedSizes.end() || fixed->second == bytes;
+    if (right && type == "box2i") {
+      const auto box = file.get<std::array<std::int32_t, 4>>();
+      if (name == "dataWindow" && !(sane(box[0], box[2]) && sane(box[1], box[3])))
+        file.fail("the data window has no pixels or more than 65536 a side", at);
+    } else if (right && type == "tiledesc") {
+      const auto size = file.get<std::array<std::uint32_t, 2>>();
+      if (std::int64_t{size[0]} > kLargestTile / std::max<std::int64_t>(size[1], 1))
+        file.fail("tiles are too large", at);
+    } else if (type == "preview") {
+      const auto size = file.get<std::array<std::uint32_t, 2>>();
+      right = bytes >= 8 && (std::uint64_t{size[0]} * size[1]) == (bytes - 8) / 4 && bytes % 4 == 0;
+    } else if (type == "chlist") {
+      constexpr std::uint64_t kChannelBytes = 16;
+      while (!readName(file).empty()) file.skip(kChannelBytes);
+      right = file.position() == end;
+    }
+    if (!right) file.fail("attribute " + name + " has the wrong length", at);
+    file.seek(end);
+  }
+  file.seek(0);
+}
 
 // Lets OpenEXR count the file's bytes as all readers here do; it is also told where they end.
 class InStream : public Imf::IStream {
@@ -156,9 +232,8 @@ void readRows(Imf::InputFile& in, Imf::PixelType type, const Imath::Box2i& windo
 
 Texels readExrTexels(const std::filesystem::path& path) {
   InputFile file(path);
+  checkHeader(file);
   try {
-    [[maybe_unused]] static const bool limited =
-        (Imf::Header::setMaxImageSize(kLargestSide, kLargestSide), true);
     InStream stream(file);
     Imf::InputFile in(stream, 0);
     const Imf::Header& header = in.header();

@@ -36,8 +36,8 @@ struct ExrPicture {
   std::map<std::string, std::string> metadata;
 };
 
-// Throws IoError for what is missing, damaged, no EXR, has neither Y nor R, G and B, or more than 65536
-// pixels a side (which OpenEXR then refuses in the whole process).
+// Throws IoError for what is missing, damaged, no EXR, has neither Y nor R, G and B, several parts,
+// or more than 65536 pixels a side.
 ExrPicture readExr(const std::filesystem::path& path);
 // The same as it is stored: l, rgb or rgba of halves, or of floats unless all channels are halves.
 Texels readExrTexels(const std::filesystem::path& path);

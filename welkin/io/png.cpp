@@ -6,6 +6,7 @@
 
 #include <png.h>
 
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <csetjmp>
@@ -13,14 +14,18 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/input_file.h"
 
 namespace welkin::io {
 namespace {
+
+constexpr png_alloc_size_t kLongestText = 1 << 20;  // of texts and profiles
 
 struct Trouble {
   std::string message;
@@ -110,9 +115,29 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   file.commit();
 }
 
+// libpng asks for memory by the length of a chunk before it has seen it.
+void checkChunks(InputFile& file) {
+  constexpr std::uint64_t kTypeBytes = 4, kSumBytes = 4;
+  constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  if (file.size() < kMagic.size() || file.get<std::array<std::uint8_t, 8>>() != kMagic)
+    file.fail("this is no PNG", 0);
+  while (file.left() > 0) {
+    const std::uint64_t at = file.position();
+    const auto b = file.get<std::array<std::uint8_t, 4>>();  // the most significant first
+    const std::uint64_t length = std::uint64_t{b[0]} << 24 | b[1] << 16 | b[2] << 8 | b[3];
+    const auto type = file.get<std::array<char, kTypeBytes>>();
+    if (length + kSumBytes > file.left())
+      file.fail("the file is cut short: a chunk is longer than the file", at);
+    if (std::string_view(type.data(), type.size()) == "IEND") return;  // what follows is nobody's
+    file.skip(length + kSumBytes);
+  }
+}
+
 bool decodeHeader(png_structp png, png_infop info, std::FILE* file, Picture* picture) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_init_io(png, file);
+  png_set_chunk_malloc_max(png,
+                           kLongestText);  // of what is unpacked; the file's own chunks have been checked
   png_read_info(png, info);
   const unsigned storedBits = unsigned{png_get_bit_depth(png, info)} * png_get_channels(png, info);
   png_set_expand(png);
@@ -156,6 +181,8 @@ PngImage readPng(const std::filesystem::path& path, PngTexts* texts) {
   const auto fail = [&](const std::string& why) {
     throw IoError("cannot read " + path.string() + ": " + why);
   };
+  InputFile input(path);
+  checkChunks(input);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) fail(std::generic_category().message(errno));
   Trouble trouble;
@@ -172,10 +199,9 @@ PngImage readPng(const std::filesystem::path& path, PngTexts* texts) {
   // Deflate never does better than 1 : 1032, so that a header cannot ask for more memory than a file of this
   // length could fill.
   constexpr std::uint64_t kBestDeflate = 1032;
-  std::error_code error;
   const std::uint64_t rowBytes = (static_cast<std::uint64_t>(picture.width) * picture.storedBits + 7) / 8;
-  const std::uint64_t fileBytes = std::filesystem::file_size(path, error);
-  if (error || fileBytes * kBestDeflate / static_cast<std::uint64_t>(picture.height) < rowBytes)
+  const std::uint64_t fileBytes = input.size();
+  if (fileBytes * kBestDeflate / static_cast<std::uint64_t>(picture.height) < rowBytes)
     fail("the file is cut short: " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
          " pixels do not fit in its " + std::to_string(fileBytes) + " bytes");
   PngImage image;

@@ -138,29 +138,24 @@ bool holds(TexelFileKind kind, const TexelShape& shape, const DdsOptions& dds) {
 
 std::optional<TexelFormat> nearestFormat(TexelFileKind kind, const TexelShape& shape, const DdsOptions& dds) {
   const auto [channels, type] = shape.format;
-  // In this order: as it is; another name of the same channels; more channels; and each with the smallest
-  // type that loses nothing.
-  std::vector<TexelFormat> candidates;
+  // As it is, another name of the same channels, more channels; of the smallest type that loses nothing.
+  std::vector<Channels> candidates = {channels};
+  for (const Channels c : kAllChannels) {
+    const bool losesAlpha = (channels == Channels::kLa || channels == Channels::kRgba) &&
+                            c != Channels::kLa && c != Channels::kRgba;
+    const bool losesColour = countOf(channels) >= 3 && countOf(c) < 3;
+    if (c != channels && !losesAlpha && !losesColour) candidates.push_back(c);
+  }
   for (const ValueType t : {ValueType::kUnorm8, ValueType::kUnorm16, ValueType::kHalf, ValueType::kFloat}) {
     if (t != type && t != ValueType::kFloat && type != ValueType::kUnorm8) continue;  // would lose something
-    const std::size_t before = candidates.size();
-    candidates.push_back({channels, t});
-    for (const Channels c : kAllChannels) {
-      const bool losesAlpha = (channels == Channels::kLa || channels == Channels::kRgba) &&
-                              c != Channels::kLa && c != Channels::kRgba;
-      const bool losesColour = countOf(channels) >= 3 && countOf(c) < 3;
-      if (c != channels && !losesAlpha && !losesColour) candidates.push_back({c, t});
+    if (kind == TexelFileKind::kDds && dds.header == DdsHeader::kAuto)
+      for (const Channels c : candidates)
+        if (countOf(c) == countOf(channels) && legacyDdsHolds({c, t})) return TexelFormat{c, t};
+    for (const Channels c : candidates) {
+      TexelShape s = shape;
+      s.format = {c, t};
+      if (holds(kind, s, dds)) return s.format;
     }
-    if (kind == TexelFileKind::kDds &&
-        dds.header == DdsHeader::kAuto)  // a name that more programs read goes before
-      std::stable_partition(
-          candidates.begin() + static_cast<std::ptrdiff_t>(before), candidates.end(),
-          [&](TexelFormat f) { return countOf(f.channels) == countOf(channels) && legacyDdsHolds(f); });
-  }
-  for (const TexelFormat f : candidates) {
-    TexelShape s = shape;
-    s.format = f;
-    if (holds(kind, s, dds)) return f;
   }
   return std::nullopt;
 }

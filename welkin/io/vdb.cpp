@@ -90,7 +90,7 @@ class OutBuffer : public std::streambuf {
 };
 
 struct OutArchive : openvdb::io::Archive {
-  void write(std::ostream& out, const openvdb::GridPtrVec& grids) { Archive::write(out, grids, true); }
+  void writeGrids(std::ostream& out, const openvdb::GridPtrVec& grids) { write(out, grids, true); }
 };
 
 openvdb::Vec3d vec3(const glm::dvec3& v) {
@@ -278,7 +278,7 @@ struct VdbWriter::Impl {
     OutArchive archive;
     archive.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
     try {
-      archive.write(out, {grid});
+      archive.writeGrids(out, {grid});
     } catch (const Error&) {
       throw;
     } catch (const std::exception& e) {
