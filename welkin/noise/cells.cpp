@@ -12,7 +12,7 @@ constexpr int kReach = 2;  // cells: f2 <= sqrt(3), for the two nearest cells li
 
 // [0, 1) from the upper 24 bits; exact in float.
 float unit(std::uint32_t h) {
-  return static_cast<float>(h >> 8) * (1.0f / 16777216.0f);
+  return static_cast<float>(h >> 8) * CellLattice::kUnit;
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ CellLattice::CellLattice(int axes, const std::array<Axis, 3>& axis, std::optiona
 FeaturePlace CellLattice::place(std::uint32_t cellHash) const {
   FeaturePlace p{};
   for (int i = 0; i < axes_; ++i) {
-    const std::uint32_t h = mix32(cellHash + static_cast<std::uint32_t>(i + 1) * 0x9e3779b9u);
+    const std::uint32_t h = mix32(cellHash + static_cast<std::uint32_t>(i + 1) * kAxisStep);
     p.inside[i] = unit(h);
     if (!time_) continue;
     // Between half a cell and a whole one a unit of time, to and fro over a path of length 2.

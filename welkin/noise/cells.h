@@ -32,6 +32,11 @@ class CellLattice {
 
   FeaturePlace place(std::uint32_t cellHash) const;
 
+  // A point's place on axis a is kUnit times the upper 24 bits of mix32(cellHash + (a + 1) * kAxisStep).
+  static constexpr std::uint32_t kAxisStep = 0x9e3779b9u;
+  static constexpr float kUnit = 1.0f / 16777216.0f;
+  bool moves() const { return time_.has_value(); }
+
   int axes() const { return axes_; }
   const Axis& axis(int i) const { return axis_[static_cast<std::size_t>(i)]; }
 

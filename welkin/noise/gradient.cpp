@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/noise/gradient.h"
 
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -41,6 +42,21 @@ std::array<float, 4> gradientOf(int axes, std::uint32_t hash) {
   for (int i = 0, n = 0; i < 4; ++i)
     if (i != zero) g[i] = signs[n++];
   return g;
+}
+
+const GradientBytes& gradientBytes(int axes) {
+  static const std::array<GradientBytes, 3> tables = [] {
+    std::array<GradientBytes, 3> made{};
+    for (int n = 2; n <= 4; ++n)
+      for (std::uint32_t h = 0; h < 16; ++h)
+        for (int i = 0; i < n; ++i) {
+          const auto bits =
+              std::bit_cast<std::uint32_t>(gradientOf(n, h & (n == 2 ? 7 : 15))[i] * gradientBytesScale(n));
+          made[n - 2].component[i][h] = static_cast<std::uint8_t>(n == 2 && h >= 8 ? bits >> 16 : bits >> 24);
+        }
+    return made;
+  }();
+  return tables[axes - 2];
 }
 
 GradientLattice::GradientLattice(int axes, const std::array<Axis, 4>& axis, bool published)

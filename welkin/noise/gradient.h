@@ -18,6 +18,16 @@ namespace welkin::noise {
 //     their sum is zero and their covariance a multiple of the identity
 std::array<float, 4> gradientOf(int axes, std::uint32_t hash);
 
+// The same for look-ups of bytes: byte h is the upper byte of component [axis] of gradient h, with two axes
+// byte 8 + h the second; as floats. Times kGradientBytesScale.
+struct GradientBytes {
+  alignas(16) std::uint8_t component[4][16];
+};
+const GradientBytes& gradientBytes(int axes);
+constexpr float gradientBytesScale(int axes) {
+  return axes == 2 ? 1.0f : 2.0f;
+}
+
 // Perlin's permutation, as published.
 extern const std::array<std::uint8_t, 256> kPublishedPermutation;
 

@@ -21,14 +21,16 @@ constexpr std::uint32_t mix32(std::uint32_t h) {
 //   pointHash = (hash_x | 1) * rowHash(hash_y + hash_z + hash_t)
 // Bits kGradientShift and up select a gradient: they depend on all lower bits of both factors.
 inline constexpr int kGradientShift = 24;
-constexpr std::uint32_t axisHash(std::uint32_t key, std::uint32_t index) {
-  return mix32(index * 0x9e3779b9u + key);
-}
 constexpr std::uint32_t rowHash(std::uint32_t sum) {
   return mix32(sum) | 1u;
 }
 constexpr std::uint32_t pointHash(std::uint32_t hashX, std::uint32_t row) {
   return (hashX | 1u) * row;
+}
+
+inline constexpr std::uint32_t kHashStep = 0x9e3779b9u;
+constexpr std::uint32_t axisHash(std::uint32_t key, std::uint32_t index) {
+  return mix32(index * kHashStep + key);
 }
 
 // A place between two lattice points of an axis.
@@ -51,6 +53,8 @@ class Axis {
 
   std::uint32_t hash(std::uint32_t index) const { return axisHash(key_, index); }
   double frequency() const { return frequency_; }
+  std::uint32_t key() const { return key_; }
+  std::uint32_t period() const { return period_; }  // cells; 0: 2^32
   // The index `steps` cells from `index`, wrapped.
   std::uint32_t moved(std::uint32_t index, int steps) const;
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "welkin/core/error.h"
-#include "welkin/core/parallel.h"
+#include "welkin/noise/fill.h"
 #include "welkin/noise/plan.h"
 
 namespace welkin::noise {
@@ -43,7 +43,8 @@ double sumOf(const std::vector<DistortedTerm>& terms, Fractal fractal, double di
   double sum = 0.0;
   for (const DistortedTerm& t : terms) {
     std::array<double, 4> shift{};
-    for (std::size_t i = 0; i < t.fields.size(); ++i) shift[i] = distortion * t.fields[i].at(place).value;
+    for (std::size_t i = 0; i < t.fields.size(); ++i)
+      shift[i] = distortion * t.fields[i].lattice.at(place).value;
     sum += t.weight * shaped(fractal, t.main.at(place, shift).value);
   }
   return sum;
@@ -146,18 +147,50 @@ Half halfOf(float v) {
 }
 
 template <class T>
-T stored(const Plan& plan, double v) {
-  if constexpr (std::is_same_v<T, float>) {
-    return static_cast<float>(v);
-  } else if constexpr (std::is_same_v<T, Half>) {
-    return halfOf(static_cast<float>(v));
-  } else {
-    constexpr double kMost = std::numeric_limits<T>::max();
-    return static_cast<T>(std::lround(kMost * apply(plan.quantise, v)));
-  }
+void fillPointwiseAs(const FillJob& job, const Block& b) {
+  const glm::ivec3& size = job.box.size;
+  for (int z = b.z; z < b.z + b.slices; ++z)
+    for (int y = b.y; y < b.y + b.rows; ++y) {
+      T* out = static_cast<T*>(job.out) + ((static_cast<std::size_t>(z) * size.y + y) * size.x + b.x) *
+                                              static_cast<std::size_t>(job.channels);
+      for (int x = b.x; x < b.x + b.width; ++x) {
+        const glm::dvec3 p = (glm::dvec3(job.box.first + glm::ivec3(x, y, z)) + 0.5) * job.grid.spacing;
+        for (int c = 0; c < job.channels; ++c, ++out) {
+          const double v = job.noise->sample(p, c);
+          if constexpr (std::is_same_v<T, float>)
+            *out = static_cast<float>(v);
+          else if constexpr (std::is_same_v<T, Half>)
+            *out = halfOf(static_cast<float>(v));
+          else
+            *out = static_cast<T>(std::lround(std::numeric_limits<T>::max() * apply(job.plan->quantise, v)));
+        }
+      }
+    }
 }
 
+template <class T>
+constexpr Format kFormatOf = Format::kFloat;
+template <>
+constexpr Format kFormatOf<std::uint8_t> = Format::kUint8;
+template <>
+constexpr Format kFormatOf<std::uint16_t> = Format::kUint16;
+template <>
+constexpr Format kFormatOf<Half> = Format::kHalf;
+
 }  // namespace
+
+void fillPointwise(const FillJob& job, const Block& block) {
+  switch (job.format) {
+    case Format::kUint8:
+      return fillPointwiseAs<std::uint8_t>(job, block);
+    case Format::kUint16:
+      return fillPointwiseAs<std::uint16_t>(job, block);
+    case Format::kHalf:
+      return fillPointwiseAs<Half>(job, block);
+    case Format::kFloat:
+      return fillPointwiseAs<float>(job, block);
+  }
+}
 
 template <class T>
 void Noise::fill(const Grid& grid, const Box& box, std::span<T> out) const {
@@ -178,16 +211,16 @@ void Noise::fill(const Grid& grid, const Box& box, std::span<T> out) const {
     throw ParameterError("a buffer of " + std::to_string(out.size()) + " values is not what " +
                          text(box.size) + " samples of " + std::to_string(channels()) + " need");
 
-  parallelFor(static_cast<std::size_t>(box.size.y) * box.size.z, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const int y = static_cast<int>(row % box.size.y), z = static_cast<int>(row / box.size.y);
-      std::size_t n = row * box.size.x * channels();
-      for (int x = 0; x < box.size.x; ++x) {
-        const glm::dvec3 p = (glm::dvec3(box.first + glm::ivec3(x, y, z)) + 0.5) * grid.spacing;
-        for (int c = 0; c < channels(); ++c) out[n++] = stored<T>(impl_->plan, sample(p, c));
-      }
-    }
-  });
+  FillJob job{};
+  job.noise = this;
+  job.plan = &impl_->plan;
+  job.params = &params_;
+  job.grid = grid;
+  job.box = box;
+  job.format = kFormatOf<T>;
+  job.out = out.data();
+  job.channels = channels();
+  fillGrid(job);
 }
 
 template void Noise::fill(const Grid&, const Box&, std::span<std::uint8_t>) const;

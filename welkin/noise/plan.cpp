@@ -169,7 +169,7 @@ Plan makePlan(const NoiseParams& p) {
         DistortedTerm t{b.lattice(kNoise, 0, o), {}, b.weight(o)};
         constexpr double kStretch[] = {1.0, 3.33, 7.77};
         for (int i = 0; i < dimensions; ++i)
-          t.fields.push_back(b.lattice(kDistortion, i, o, kStretch[i], 0.5));
+          t.fields.push_back({b.lattice(kDistortion, i, o, kStretch[i], 0.5), 1.0});
         plan.distorted.push_back(std::move(t));
       }
       break;

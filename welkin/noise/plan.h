@@ -21,7 +21,7 @@ struct GradientTerm {
 // An octave of distorted noise: `main` looked up at places shifted by `distortion` times the fields.
 struct DistortedTerm {
   GradientLattice main;
-  std::vector<GradientLattice> fields;  // one for each dimension
+  std::vector<GradientTerm> fields;  // one for each dimension, weight 1
   double weight;
 };
 
@@ -46,14 +46,15 @@ struct Plan {
 
 Plan makePlan(const NoiseParams& params);
 
-// Perlin-Worley's three sums of 1 - F1 at four frequencies, each twice the one before, and the part of
-// gradient noise. `cells` are clamped to [0, 1], `gradient` lies in [0, 1].
-template <class T>
-constexpr std::array<T, 4> perlinWorley(T gradient, const std::array<T, 4>& cells) {
-  const T coarse = T(0.625) * cells[0] + T(0.25) * cells[1] + T(0.125) * cells[2];
-  const T middle = T(0.625) * cells[1] + T(0.25) * cells[2] + T(0.125) * cells[3];
-  const T fine = T(0.75) * cells[2] + T(0.25) * cells[3];
-  return {middle + gradient * (T(1) - middle), coarse, middle, fine};
+// Perlin-Worley's sums of 1 - F1 at three frequencies, each twice the one before; the finest has two.
+inline constexpr float kCoarse[3] = {0.625f, 0.25f, 0.125f}, kFine[2] = {0.75f, 0.25f};
+
+// Its channels, from gradient noise and four frequencies of cells, all in [0, 1].
+constexpr std::array<double, 4> perlinWorley(double gradient, const std::array<double, 4>& w) {
+  const double coarse = kCoarse[0] * w[0] + kCoarse[1] * w[1] + kCoarse[2] * w[2];
+  const double middle = kCoarse[0] * w[1] + kCoarse[1] * w[2] + kCoarse[2] * w[3];
+  const double fine = kFine[0] * w[2] + kFine[1] * w[3];
+  return {middle + gradient * (1.0 - middle), coarse, middle, fine};
 }
 
 }  // namespace welkin::noise
