@@ -104,7 +104,7 @@ HWY_INLINE void distortOctave(const DistortTables& t, Fractal fractal, int dimen
                               const float* const* shift, int x, int y, int z, int width, float* out) {
   const Floats d;
   const Words du;
-  const Gradients<kAxes> gradients(gradientBytes(kAxes));
+  const Gradients<kAxes> gradients;
   const GradientLattice& lattice = *t.lattice;
   const auto scale = hn::Set(d, 1.0f / gradientBytesScale(kAxes)), weight = hn::Set(d, t.weight);
   const auto one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);

@@ -73,13 +73,33 @@ struct RowPlaces {
   const float *lowWeight, *lowReach, *highWeight, *highReach;
 };
 
-// Widest part of a row worked on at a time, so that all octaves stay in the first-level cache. Arrays over x
-// are padded to a multiple of kPad.
-inline constexpr int kStrip = 256;
-inline constexpr int kPad = 64;
+// A strip of kStrip samples of kChunk rows is worked on at a time, so that all octaves' lines of lattice
+// points stay in the first-level cache. Arrays over x are padded to a multiple of kPad.
+inline constexpr int kStrip = 128, kChunk = 4, kPad = 64;
 constexpr int padded(int n) {
   return (n + kPad - 1) / kPad * kPad;
 }
+
+// A line holds A and B of fill.h's formula for a row of lattice points. The lines of an octave are kept in a
+// ring that has room for those of a chunk and two from the chunk before; the last floats keep lines from
+// beginning in the same sets of the cache.
+inline constexpr int kLines = 2 * kChunk + 2, kLineStride = 2 * kStrip + 16;
+struct LineRef {
+  std::uint32_t index;   // of the row of lattice points
+  std::uint32_t offset;  // of the line, in floats
+};
+
+// The lines of one octave that a chunk of rows needs: first those that the chunk before has left.
+struct ChunkLines {
+  const LineRef* line;
+  std::uint32_t left, count;
+};
+
+// A row of samples between two lines.
+struct RowPlace {
+  float weights[4];        // low and high line's weight and reach, all scaled
+  std::uint32_t lines[2];  // offsets
+};
 
 // One octave of gradient noise with its places on every axis of the box.
 struct TermTables {
@@ -88,7 +108,6 @@ struct TermTables {
   RowPlaces x;     // by sample of the row
   const Place* z;  // by slice; in a plane null
   Place time;      // on the axis behind the last of the domain
-  int outerAxes;   // of the lattice beside x and y: 0 to 2
 };
 
 // Sums of such octaves over the box: the octaves of all sums one after the other, sum s from first[s] on.
@@ -96,8 +115,9 @@ struct GradientTables {
   int terms = 0, sums = 0;
   TermTables* term = nullptr;
   int* first = nullptr;          // sums + 1
-  float (*yWeights)[4];          // [row * terms + term]: low and high corner's weight and reach, all scaled
-  std::uint32_t (*yIndices)[2];  // [row * terms + term]: low and high lattice index
+  RowPlace* rows = nullptr;      // [row * terms + term]
+  ChunkLines* chunks = nullptr;  // [chunk * terms + term]
+  int lead = 0;                  // rows of the first chunk before the box's first
   float bias = 0.0f;             // added to every sum
   Fractal fractal = Fractal::kFbm;
 };
@@ -172,6 +192,14 @@ void fillGrid(FillJob& job);
 
 // One block of it by the point function, for processors without vectors and cells smaller than samples.
 void fillPointwise(const FillJob& job, const Block& block);
+
+// On the processor's best instruction set: weights and reaches of corners from places within cells, n of
+// them, and the hashes of lattice points.
+struct CornerArrays {
+  float *lowWeight, *lowReach, *highWeight, *highReach;
+};
+void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out);
+void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out);
 
 // One block of it, on the processor's best instruction set.
 void fillBlock(const FillJob& job, const Block& block, Scratch& scratch);

@@ -82,25 +82,6 @@ ScratchLoan::~ScratchLoan() {
 
 namespace {
 
-struct CornerPair {
-  Corner low, high;
-};
-
-CornerPair corners(double t, bool derivative) {
-  const double s = fade(t);
-  if (!derivative)
-    return {{static_cast<float>(1.0 - s), static_cast<float>((1.0 - s) * t)},
-            {static_cast<float>(s), static_cast<float>(s * (t - 1.0))}};
-  const double slope = fadeSlope(t);
-  return {{static_cast<float>(-slope), static_cast<float>(1.0 - s - slope * t)},
-          {static_cast<float>(slope), static_cast<float>(s + slope * (t - 1.0))}};
-}
-
-Place placeOf(const Span& span, bool derivative) {
-  const CornerPair c = corners(span.inside, derivative);
-  return {c.low, c.high, span.low, span.high};
-}
-
 // Makes the tables of a fill in `memory`.
 class Tables {
  public:
@@ -115,14 +96,15 @@ class Tables {
     g.sums = sums;
     g.bias = static_cast<float>(bias);
     g.fractal = fractal;
+    g.lead = job_.cellTerms > 0 ? job_.lead[1] % kChunk : 0;  // blocks of cells begin at tiles
     g.first = memory_.take<int>(static_cast<std::size_t>(sums) + 1);
     g.first[0] = 0;
     for (int s = 0; s < sums; ++s) g.first[s + 1] = g.first[s] + counts[s];
     g.terms = g.first[sums];
     g.term = memory_.take<TermTables>(static_cast<std::size_t>(g.terms));
-    const std::size_t cells = static_cast<std::size_t>(g.terms) * job_.box.size.y;
-    g.yWeights = memory_.take<float[4]>(cells);
-    g.yIndices = memory_.take<std::uint32_t[2]>(cells);
+    const int rows = job_.box.size.y, chunks = chunkCount(g);
+    g.rows = memory_.take<RowPlace>(static_cast<std::size_t>(g.terms) * rows);
+    g.chunks = memory_.take<ChunkLines>(static_cast<std::size_t>(g.terms) * chunks);
     for (int s = 0; s < sums; ++s)
       for (int i = 0; i < counts[s]; ++i) {
         const GradientTerm& term = termOf(s, i);
@@ -180,6 +162,8 @@ class Tables {
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
 
+  int chunkCount(const GradientTables& g) const { return (g.lead + job_.box.size.y + kChunk - 1) / kChunk; }
+
   static Spot spotOf(const Axis& axis, double p) {
     const Span span = axis.at(p);
     return {span.low, static_cast<float>(span.inside)};
@@ -194,51 +178,136 @@ class Tables {
     const GradientLattice& lattice = term.lattice;
     TermTables& out = g.term[t];
     out.lattice = &lattice;
-    out.outerAxes = lattice.axes() - 2;
     const bool folded = g.fractal == Fractal::kFbm;
     out.weight = static_cast<float>(term.weight * scale);
     const double unit = 1.0 / gradientBytesScale(lattice.axes());
     const auto yScale = static_cast<float>(folded ? term.weight * scale * unit : unit);
 
-    addRowPlaces(out, lattice, term.derivative == 0);
-    for (int y = 0; y < job_.box.size.y; ++y) {
-      const Place p = placeOf(lattice.axis(1).at(position(1, job_.box.first.y + y)), term.derivative == 1);
-      const std::size_t at = static_cast<std::size_t>(y) * g.terms + t;
-      g.yWeights[at][0] = yScale * p.low.weight;
-      g.yWeights[at][1] = yScale * p.low.reach;
-      g.yWeights[at][2] = yScale * p.high.weight;
-      g.yWeights[at][3] = yScale * p.high.reach;
-      g.yIndices[at][0] = p.lowIndex;
-      g.yIndices[at][1] = p.highIndex;
-    }
+    const Line x = lineOf(lattice.axis(0), 0, term.derivative == 0);
+    std::uint32_t* hash[2] = {x.low, x.high};
+    if (!lattice.published())
+      for (std::uint32_t*& h : hash) {
+        auto* hashed = memory_.take<std::uint32_t>(static_cast<std::size_t>(x.count));
+        makeHashes(lattice.axis(0).key(), h, x.count, hashed);
+        for (int i = 0; i < x.count; ++i) hashed[i] |= 1u;
+        h = hashed;
+      }
+    out.x = {hash[0],           hash[1], x.corner.lowWeight, x.corner.lowReach, x.corner.highWeight,
+             x.corner.highReach};
+
+    addRows(g, t, lineOf(lattice.axis(1), 1, term.derivative == 1), yScale);
     out.z = nullptr;
     if (dimensions_ == 3) {
-      auto* z = memory_.take<Place>(static_cast<std::size_t>(job_.box.size.z));
-      for (int k = 0; k < job_.box.size.z; ++k)
-        z[k] = placeOf(lattice.axis(2).at(position(2, job_.box.first.z + k)), term.derivative == 2);
-      out.z = z;
+      const Line z = lineOf(lattice.axis(2), 2, term.derivative == 2);
+      auto* places = memory_.take<Place>(static_cast<std::size_t>(z.count));
+      for (int k = 0; k < z.count; ++k) places[k] = z.place(k);
+      out.z = places;
     }
-    if (lattice.axes() > dimensions_)
-      out.time = placeOf(lattice.axis(dimensions_).at(job_.params->time.value_or(0.0)), false);
+    if (lattice.axes() > dimensions_) {
+      Line time = takeLine(1);
+      set(time, 0, lattice.axis(dimensions_).at(job_.params->time.value_or(0.0)));
+      makeCorners(time.inside, 1, false, time.corner);
+      out.time = time.place(0);
+    }
   }
 
-  void addRowPlaces(TermTables& out, const GradientLattice& lattice, bool derivative) {
-    const auto width = static_cast<std::size_t>(padded(job_.box.size.x));
-    auto* lowHash = memory_.take<std::uint32_t>(width);
-    auto* highHash = memory_.take<std::uint32_t>(width);
-    float* values[4];
-    for (float*& v : values) v = memory_.take<float>(width);
-    const Axis& axis = lattice.axis(0);
-    for (std::size_t i = 0; i < width; ++i) {
-      const Place p = placeOf(axis.at(position(0, job_.box.first.x + static_cast<int>(i))), derivative);
-      lowHash[i] = lattice.published() ? p.lowIndex : axis.hash(p.lowIndex) | 1u;
-      highHash[i] = lattice.published() ? p.highIndex : axis.hash(p.highIndex) | 1u;
-      values[0][i] = p.low.weight;
-      values[1][i] = p.low.reach;
-      values[2][i] = p.high.weight;
-      values[3][i] = p.high.reach;
+  // Samples along an axis, padded.
+  struct Line {
+    int count;
+    double* inside;
+    std::uint32_t *low, *high;  // indices
+    CornerArrays corner;
+
+    Place place(int i) const {
+      return {{corner.lowWeight[i], corner.lowReach[i]},
+              {corner.highWeight[i], corner.highReach[i]},
+              low[i],
+              high[i]};
     }
-    out.x = {lowHash, highHash, values[0], values[1], values[2], values[3]};
+  };
+  Line takeLine(int samples) {
+    const int count = padded(samples);
+    const auto n = static_cast<std::size_t>(count);
+    const auto floats = [&] { return memory_.take<float>(n); };
+    Line line{
+        count, memory_.take<double>(n), memory_.take<std::uint32_t>(n), memory_.take<std::uint32_t>(n), {}};
+    line.corner = {floats(), floats(), floats(), floats()};
+    return line;
+  }
+  static void set(Line& line, int i, const Span& span) {
+    line.inside[i] = span.inside;
+    line.low[i] = span.low;
+    line.high[i] = span.high;
+  }
+
+  Line lineOf(const Axis& axis, int a, bool derivative) {
+    Line line = takeLine(job_.box.size[a]);
+    // Exact at multiples of kExactly samples of the whole grid, stepped from there: the same in every box,
+    // and off by no more than some roundings of a double.
+    constexpr int kExactly = 64;
+    const double step = axis.frequency() * job_.grid.spacing[a];
+    const std::uint32_t period = axis.period();
+    const bool steps = step * kExactly < 1e9 && (period == 0 || step < period);
+    const int first = job_.box.first[a];
+    for (int i = 0; i < line.count;) {
+      const int begin = (first + i) / kExactly * kExactly,
+                end = std::min(begin + kExactly - first, line.count);
+      const Span span = axis.at(position(a, begin));
+      if (!steps) {
+        set(line, i, axis.at(position(a, first + i)));
+        ++i;
+        continue;
+      }
+      for (; i < end; ++i) {
+        const double t = span.inside + (first + i - begin) * step;
+        const auto cells = static_cast<std::uint32_t>(t);
+        line.inside[i] = t - cells;
+        std::uint32_t low = span.low + cells;
+        if (period != 0 && (low >= period || low < cells)) low = (span.low + std::uint64_t{cells}) % period;
+        line.low[i] = low;
+        line.high[i] = low + 1 == period ? 0 : low + 1;
+      }
+    }
+    makeCorners(line.inside, line.count, derivative, line.corner);
+    return line;
+  }
+
+  // Which lines of lattice points the rows lie between, chunk by chunk.
+  void addRows(GradientTables& g, int t, const Line& y, float scale) {
+    const int rows = job_.box.size.y, chunks = chunkCount(g);
+    LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * kLines);
+    std::uint32_t slot = 0;
+    const LineRef* last[2] = {};  // of the row before
+    for (int c = 0; c < chunks; ++c) {
+      ChunkLines& chunk = g.chunks[static_cast<std::size_t>(c) * g.terms + t];
+      chunk = {next, 0, 0};
+      for (const LineRef*& l : last)
+        if (l != nullptr && (l == last[0] || l->index != last[0]->index)) {
+          next[chunk.count] = *l;
+          l = next + chunk.count++;
+        }
+      chunk.left = chunk.count;
+      for (int row = std::max(c * kChunk - g.lead, 0); row < std::min((c + 1) * kChunk - g.lead, rows);
+           ++row) {
+        const auto find = [&](std::uint32_t index) {
+          for (const LineRef* l : {last[1], last[0]})
+            if (l != nullptr && l->index == index) return l;
+          LineRef& made = next[chunk.count++];
+          made = {index, (static_cast<std::uint32_t>(t) * kLines + slot++ % kLines) * kLineStride};
+          return static_cast<const LineRef*>(&made);
+        };
+        const LineRef* low = find(y.low[row]);
+        const LineRef* high = y.high[row] == y.low[row] ? low : find(y.high[row]);
+        last[0] = low;
+        last[1] = high;
+        const CornerArrays& w = y.corner;
+        g.rows[static_cast<std::size_t>(row) * g.terms + t] = {
+            {scale * w.lowWeight[row], scale * w.lowReach[row], scale * w.highWeight[row],
+             scale * w.highReach[row]},
+            {low->offset, high->offset}};
+      }
+      next += chunk.count;
+    }
   }
 
   FillJob& job_;
@@ -250,6 +319,7 @@ void makeTables(FillJob& job, Scratch& memory) {
   const Plan& plan = *job.plan;
   const NoiseParams& p = *job.params;
   const double scale = plan.normalise.scale, bias = plan.normalise.bias;
+  job.cellTerms = static_cast<int>(plan.cells.size());
   Tables tables(job, memory);
   int counts[3 * 24] = {};
   const auto inSum = [&](int s, int i) -> const GradientTerm& { return plan.gradients[s][i]; };
@@ -280,7 +350,6 @@ void makeTables(FillJob& job, Scratch& memory) {
       break;
   }
   job.bias = static_cast<float>(p.kind == Kind::kPerlinWorley ? 0.0 : bias);
-  job.cellTerms = static_cast<int>(plan.cells.size());
   job.cells = memory.take<CellTables>(plan.cells.size());
   for (int t = 0; t < job.cellTerms; ++t) tables.addCells(plan.cells[t], job.cells[t], scale);
 }
@@ -330,7 +399,7 @@ void fillGrid(FillJob& job) {
     rows = p.dimensions == 3 ? 16 : 64;
     slices = 8;
   } else if (size.z < 4 * threadCount()) {
-    rows = std::max(32, size.y / (4 * threadCount()));
+    rows = std::max(64, size.y / (4 * threadCount()) / kChunk * kChunk);
   }
   const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
   const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0, leadZ = cells ? job.lead[2] : 0;

@@ -30,9 +30,10 @@ using VU = hn::Vec<Words>;
 // Components of gradients by look-up of bytes. With three and four axes the upper byte of +-2 or 0
 // (GradientBytes::kScale undoes the 2), with two axes the upper two bytes.
 template <int kAxes>
-class Gradients {
- public:
-  HWY_INLINE explicit Gradients(const GradientBytes& bytes) : bytes_(bytes) {}
+struct Gradients {
+  HWY_INLINE Gradients() {
+    for (int a = 0; a < kAxes; ++a) table[a] = hn::LoadDup128(Bytes(), gradientBytes(kAxes).component[a]);
+  }
 
   // Where in the tables the gradient of a point hash is: the indices of the bytes of each component, 0x80 and
   // up for those that are zero.
@@ -46,186 +47,175 @@ class Gradients {
     }
   }
 
-  HWY_INLINE VF component(int axis, VU where) const {
-    const auto table = hn::LoadDup128(Bytes(), bytes_.component[axis]);
-    return hn::BitCast(Floats(), hn::TableLookupBytesOr0(table, where));
+  HWY_INLINE VF component(int axis, VU at) const {
+    return hn::BitCast(Floats(), hn::TableLookupBytesOr0(table[axis], at));
   }
 
- private:
-  const GradientBytes& bytes_;
+  hn::Vec<Bytes> table[kAxes];
 };
 
-// Factors of one plane of lattice points (one corner of the axes beside x and y), by sample of the row.
-struct PlaneFactors {
-  const float* low[4];   // of the lower corner in x: for the components x, y and those of the outer axes
-  const float* high[4];  // of the upper
-  std::uint32_t hash;    // of the outer axes
-  std::uint32_t index;   // on the third axis
-};
-
-// A strip of the box, row after row.
+// A strip of the box, chunk after chunk of rows.
 class GradientRows {
  public:
   GradientRows(const GradientTables& tables, Scratch& scratch, int x, int width)
       : tables_(tables), x_(x), width_(padded(width)) {
     const auto terms = static_cast<std::size_t>(tables.terms);
-    lines_ = scratch.take<Line>(2 * terms);
-    rows_ = scratch.take<const float*>(2 * terms);
-    planes_ = scratch.take<PlaneFactors>(kMaxPlanes * terms);
+    lines_ = scratch.take<float>(terms * kLines * kLineStride);
+    planes_ = scratch.take<Plane>(kMaxPlanes * terms);
     factors_ = scratch.take<float*>(terms);
-    points_ = scratch.take<std::uint32_t>(std::size_t{2} * kStrip);
-    for (std::size_t i = 0; i < 2 * terms; ++i)
-      lines_[i].values = scratch.take<float>(std::size_t{2} * kStrip);
+    points_ = scratch.take<std::uint32_t>(std::size_t{2} * kLines * kMaxPlanes * kStrip);
     for (std::size_t t = 0; t < terms; ++t) {
-      const int outer = tables.term[t].outerAxes;
-      factors_[t] =
-          outer == 0 ? nullptr : scratch.take<float>((std::size_t{1} << outer) * 2 * (2 + outer) * kStrip);
+      const int axes = tables.term[t].lattice->axes();
+      factors_[t] = scratch.take<float>((std::size_t{1} << (axes - 2)) * 2 * axes * kStrip);
     }
   }
 
   void beginSlice(int z) {
-    for (int t = 0; t < tables_.terms; ++t) {
-      makePlanes(t, z);
-      lines_[2 * t].made = lines_[2 * t + 1].made = false;
-    }
+    for (int t = 0; t < tables_.terms; ++t) makePlanes(t, z);
+    fresh_ = true;
   }
 
-  // One row of every sum; out[s] has room for a padded strip.
-  void row(int y, float* const* out) {
-    const std::size_t at = static_cast<std::size_t>(y) * tables_.terms;
+  // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. Row r of
+  // sum s goes to out[s] + r * kStrip. Chunks of a slice must follow one another.
+  int fillChunk(int y, int rows, float* const* out) {
+    const int chunk = (y + tables_.lead) / kChunk;
+    rows = HWY_MIN(rows, (chunk + 1) * kChunk - tables_.lead - y);
+    const ChunkLines* lines = tables_.chunks + static_cast<std::ptrdiff_t>(chunk) * tables_.terms;
     for (int t = 0; t < tables_.terms; ++t) {
-      const std::uint32_t* index = tables_.yIndices[at + t];
-      Line &low = lines_[2 * t], &high = lines_[2 * t + 1];
-      if (low.made && low.index == index[0] && high.index == index[1]) continue;
-      if (low.made && high.index == index[0]) std::swap(low, high);
-      if (!low.made || low.index != index[0]) expand(t, index[0], low);
-      if (!high.made || high.index != index[1]) expand(t, index[1], high);
-      rows_[2 * t] = low.values;
-      rows_[2 * t + 1] = high.values;
+      const std::uint32_t left = fresh_ ? 0 : lines[t].left;
+      if (left < lines[t].count) expand(t, lines[t].line + left, static_cast<int>(lines[t].count - left));
     }
+    fresh_ = false;
     for (int s = 0; s < tables_.sums; ++s) {
       const int first = tables_.first[s], terms = tables_.first[s + 1] - first;
-      const float(*weights)[4] = tables_.yWeights + at + first;
+      const RowPlace* places = tables_.rows + static_cast<std::ptrdiff_t>(y) * tables_.terms + first;
       switch (tables_.fractal) {
         case Fractal::kFbm:
-          sum<Fractal::kFbm>(first, terms, weights, out[s]);
+          sum<Fractal::kFbm>(first, terms, places, rows, out[s]);
           break;
         case Fractal::kBillow:
-          sum<Fractal::kBillow>(first, terms, weights, out[s]);
+          sum<Fractal::kBillow>(first, terms, places, rows, out[s]);
           break;
         case Fractal::kRidged:
-          sum<Fractal::kRidged>(first, terms, weights, out[s]);
+          sum<Fractal::kRidged>(first, terms, places, rows, out[s]);
           break;
       }
     }
+    return rows;
   }
 
  private:
   static constexpr std::size_t kMaxPlanes = 4;
 
-  // A row of lattice points as the samples see it: A, then B.
-  struct Line {
-    std::uint32_t index;
-    bool made;
-    float* values;
+  // One corner of the axes beside x and y.
+  struct Plane {
+    std::uint32_t hash;   // of those axes
+    std::uint32_t index;  // on the third
   };
 
+  // The products of the factors of x and of the outer axes: for each plane and component of the gradient
+  // those of the lower corner in x, then of the upper one.
   void makePlanes(int t, int z) {
     const TermTables& term = tables_.term[t];
-    const RowPlaces& x = term.x;
     const Place outer[2] = {term.z != nullptr ? term.z[z] : term.time, term.time};
+    const int axes = term.lattice->axes();
     const Floats d;
     float* next = factors_[t];
-    for (int p = 0; p < 1 << term.outerAxes; ++p) {
-      PlaneFactors& plane = planes_[kMaxPlanes * t + p];
-      plane.hash = 0;
-      if (term.outerAxes == 0) {
-        plane.low[0] = x.lowReach + x_, plane.low[1] = x.lowWeight + x_;
-        plane.high[0] = x.highReach + x_, plane.high[1] = x.highWeight + x_;
-        continue;
-      }
-      // Products of the outer axes' factors: for the components x and y, then for each outer one.
+    for (int p = 0; p < 1 << (axes - 2); ++p) {
+      Plane& plane = planes_[kMaxPlanes * t + p];
+      plane = {0, 0};
       float scale[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-      for (int e = 0; e < term.outerAxes; ++e) {
-        const bool high = (p >> e & 1) != 0;
-        const Corner& corner = high ? outer[e].high : outer[e].low;
-        const std::uint32_t index = high ? outer[e].highIndex : outer[e].lowIndex;
-        if (e == 0) plane.index = index;
-        plane.hash += term.lattice->axis(2 + e).hash(index);
-        for (int c = 0; c < 2 + term.outerAxes; ++c) scale[c] *= c == 2 + e ? corner.reach : corner.weight;
+      for (int e = 2; e < axes; ++e) {
+        const bool high = (p >> (e - 2) & 1) != 0;
+        const Corner& corner = high ? outer[e - 2].high : outer[e - 2].low;
+        const std::uint32_t index = high ? outer[e - 2].highIndex : outer[e - 2].lowIndex;
+        if (e == 2) plane.index = index;
+        plane.hash += term.lattice->axis(e).hash(index);
+        for (int c = 0; c < axes; ++c) scale[c] *= c == e ? corner.reach : corner.weight;
       }
-      for (int c = 0; c < 2 + term.outerAxes; ++c) {
+      for (int c = 0; c < axes; ++c, next += std::ptrdiff_t{2} * kStrip) {
         const auto by = hn::Set(d, scale[c]);
-        const float* low = (c == 0 ? x.lowReach : x.lowWeight) + x_;
-        const float* high = (c == 0 ? x.highReach : x.highWeight) + x_;
+        const float* low = (c == 0 ? term.x.lowReach : term.x.lowWeight) + x_;
+        const float* high = (c == 0 ? term.x.highReach : term.x.highWeight) + x_;
         for (int i = 0; i < width_; i += static_cast<int>(hn::Lanes(d))) {
           hn::Store(hn::Mul(by, hn::LoadU(d, low + i)), d, next + i);
           hn::Store(hn::Mul(by, hn::LoadU(d, high + i)), d, next + kStrip + i);
         }
-        plane.low[c] = next;
-        plane.high[c] = next + kStrip;
-        next += std::ptrdiff_t{2} * kStrip;
       }
     }
   }
 
-  void expand(int t, std::uint32_t index, Line& line) {
-    line.index = index;
-    line.made = true;
-    switch (tables_.term[t].outerAxes) {
-      case 0:
-        return expandRow<2>(t, index, line.values);
-      case 1:
-        return expandRow<3>(t, index, line.values);
+  void expand(int t, const LineRef* lines, int count) {
+    switch (tables_.term[t].lattice->axes()) {
+      case 2:
+        return expandLines<2>(t, lines, count);
+      case 3:
+        return expandLines<3>(t, lines, count);
       default:
-        return expandRow<4>(t, index, line.values);
+        return expandLines<4>(t, lines, count);
     }
   }
 
   template <int kAxes>
-  HWY_NOINLINE void expandRow(int t, std::uint32_t index, float* out) {
+  HWY_NOINLINE void expandLines(int t, const LineRef* lines, int count) {
     const Floats d;
     const Words du;
     const TermTables& term = tables_.term[t];
     constexpr int kPlanes = 1 << (kAxes - 2);
-    const PlaneFactors* planes = planes_ + kMaxPlanes * t;
-    const Gradients<kAxes> gradients(gradientBytes(kAxes));
-    const std::uint32_t rowSum = term.lattice->axis(1).hash(index);
-    const bool published = term.lattice->published();
-    for (int p = 0; p < kPlanes; ++p) {
-      const PlaneFactors& f = planes[p];
-      const auto rowFactor = hn::Set(du, published ? 1u : rowHash(rowSum + f.hash));
-      const std::uint32_t* lowHash = term.x.lowHash + x_;
-      const std::uint32_t* highHash = term.x.highHash + x_;
-      if (published) {
-        publishedHashes(term, index, f.index);
-        lowHash = points_;
-        highHash = points_ + kStrip;
-      }
-      for (int i = 0; i < width_; i += static_cast<int>(hn::Lanes(d))) {
-        const auto low = gradients.where(hn::Mul(hn::LoadU(du, lowHash + i), rowFactor));
-        const auto high = gradients.where(hn::Mul(hn::LoadU(du, highHash + i), rowFactor));
-        auto a = p == 0 ? hn::Zero(d) : hn::Load(d, out + i);
-        auto b = p == 0 ? hn::Zero(d) : hn::Load(d, out + kStrip + i);
-        for (int c = 0; c < kAxes; ++c) {
-          auto& to = c == 1 ? b : a;
-          to = hn::MulAdd(gradients.component(c, low), hn::LoadU(d, f.low[c] + i), to);
-          to = hn::MulAdd(gradients.component(c, high), hn::LoadU(d, f.high[c] + i), to);
+    const Gradients<kAxes> gradients;
+    const std::uint32_t* HWY_RESTRICT lowHash = term.x.lowHash + x_;
+    const std::uint32_t* HWY_RESTRICT highHash = term.x.highHash + x_;
+    std::ptrdiff_t lineHashes = 0, planeHashes = 0;  // distances of their hashes
+    std::uint32_t rows[kLines][kPlanes];
+    float* HWY_RESTRICT out[kLines];
+    for (int n = 0; n < count; ++n) {
+      out[n] = lines_ + lines[n].offset;
+      const std::uint32_t hash = term.lattice->axis(1).hash(lines[n].index);
+      for (int p = 0; p < kPlanes; ++p) rows[n][p] = rowHash(hash + planes_[kMaxPlanes * t + p].hash);
+    }
+    if (term.lattice->published()) {
+      planeHashes = std::ptrdiff_t{2} * kStrip;
+      lineHashes = planeHashes * kPlanes;
+      for (int n = 0; n < count; ++n)
+        for (int p = 0; p < kPlanes; ++p) {
+          publishedHashes(term, lines[n].index, planes_[kMaxPlanes * t + p].index,
+                          points_ + n * lineHashes + p * planeHashes);
+          rows[n][p] = 1;
         }
-        hn::Store(a, d, out + i);
-        hn::Store(b, d, out + kStrip + i);
+      lowHash = points_;
+      highHash = points_ + kStrip;
+    }
+    const float* HWY_RESTRICT factors = factors_[t];
+    const int width = width_;
+    for (int i = 0; i < width; i += static_cast<int>(hn::Lanes(d))) {
+      for (int n = 0; n < count; ++n) {
+        auto a = hn::Zero(d), b = hn::Zero(d);
+        for (int p = 0; p < kPlanes; ++p) {
+          const auto row = hn::Set(du, rows[n][p]);
+          const std::ptrdiff_t at = n * lineHashes + p * planeHashes + i;
+          const auto low = gradients.where(hn::Mul(hn::LoadU(du, lowHash + at), row));
+          const auto high = gradients.where(hn::Mul(hn::LoadU(du, highHash + at), row));
+          for (int c = 0; c < kAxes; ++c) {
+            const float* factor = factors + std::ptrdiff_t{2} * (p * kAxes + c) * kStrip + i;
+            auto& to = c == 1 ? b : a;
+            to = hn::MulAdd(gradients.component(c, low), hn::Load(d, factor), to);
+            to = hn::MulAdd(gradients.component(c, high), hn::Load(d, factor + kStrip), to);
+          }
+        }
+        hn::Store(a, d, out[n] + i);
+        hn::Store(b, d, out[n] + kStrip + i);
       }
     }
   }
 
   // Perlin's own chain of look-ups, put where the hash's bits are.
-  void publishedHashes(const TermTables& term, std::uint32_t y, std::uint32_t z) {
+  void publishedHashes(const TermTables& term, std::uint32_t y, std::uint32_t z, std::uint32_t* out) const {
     const auto& p = kPublishedPermutation;
     for (int side = 0; side < 2; ++side) {
       const std::uint32_t* x = (side == 0 ? term.x.lowHash : term.x.highHash) + x_;
       for (int i = 0; i < width_; ++i)
-        points_[side * kStrip + i] = static_cast<std::uint32_t>(p[(p[(p[x[i] & 255] + y) & 255] + z) & 255])
-                                     << kGradientShift;
+        out[side * kStrip + i] = static_cast<std::uint32_t>(p[(p[(p[x[i] & 255] + y) & 255] + z) & 255])
+                                 << kGradientShift;
     }
   }
 
@@ -252,37 +242,40 @@ class GradientRows {
   }
 
   template <Fractal kFractal>
-  HWY_INLINE void sum(int first, int terms, const float (*weights)[4], float* HWY_RESTRICT out) const {
+  HWY_INLINE void sum(int first, int terms, const RowPlace* places, int rows, float* HWY_RESTRICT out) const {
     const Floats d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
+    const int lanes = static_cast<int>(hn::Lanes(d)), width = width_;
     const auto bias = hn::Set(d, tables_.bias);
-    for (int i = 0; i < width_; i += 4 * lanes) {
-      auto s0 = bias, s1 = bias, s2 = bias, s3 = bias;
-      for (int t = 0; t < terms; ++t) {
-        const float* low = rows_[2 * (first + t)] + i;
-        const float* high = rows_[2 * (first + t) + 1] + i;
-        const auto w0 = hn::Set(d, weights[t][0]), r0 = hn::Set(d, weights[t][1]);
-        const auto w1 = hn::Set(d, weights[t][2]), r1 = hn::Set(d, weights[t][3]);
-        const float w = kFractal == Fractal::kFbm ? 0.0f : tables_.term[first + t].weight;
-        s0 = added<kFractal>(s0, low, high, w0, r0, w1, r1, w);
-        s1 = added<kFractal>(s1, low + lanes, high + lanes, w0, r0, w1, r1, w);
-        s2 = added<kFractal>(s2, low + 2 * lanes, high + 2 * lanes, w0, r0, w1, r1, w);
-        s3 = added<kFractal>(s3, low + 3 * lanes, high + 3 * lanes, w0, r0, w1, r1, w);
+    const float* HWY_RESTRICT lines = lines_;
+    for (int r = 0; r < rows; ++r, places += tables_.terms, out += kStrip)
+      for (int i = 0; i < width; i += 4 * lanes) {
+        auto s0 = bias, s1 = bias, s2 = bias, s3 = bias;
+        for (int t = 0; t < terms; ++t) {
+          const RowPlace& p = places[t];
+          const float* low = lines + p.lines[0] + i;
+          const float* high = lines + p.lines[1] + i;
+          const auto w0 = hn::Set(d, p.weights[0]), r0 = hn::Set(d, p.weights[1]);
+          const auto w1 = hn::Set(d, p.weights[2]), r1 = hn::Set(d, p.weights[3]);
+          const float w = kFractal == Fractal::kFbm ? 0.0f : tables_.term[first + t].weight;
+          s0 = added<kFractal>(s0, low, high, w0, r0, w1, r1, w);
+          s1 = added<kFractal>(s1, low + lanes, high + lanes, w0, r0, w1, r1, w);
+          s2 = added<kFractal>(s2, low + 2 * lanes, high + 2 * lanes, w0, r0, w1, r1, w);
+          s3 = added<kFractal>(s3, low + 3 * lanes, high + 3 * lanes, w0, r0, w1, r1, w);
+        }
+        hn::Store(s0, d, out + i);
+        hn::Store(s1, d, out + i + lanes);
+        hn::Store(s2, d, out + i + 2 * lanes);
+        hn::Store(s3, d, out + i + 3 * lanes);
       }
-      hn::Store(s0, d, out + i);
-      hn::Store(s1, d, out + i + lanes);
-      hn::Store(s2, d, out + i + 2 * lanes);
-      hn::Store(s3, d, out + i + 3 * lanes);
-    }
   }
 
   const GradientTables& tables_;
   int x_, width_;
-  Line* lines_;            // two a term: below and above the row
-  const float** rows_;     // their values
-  PlaneFactors* planes_;   // kMaxPlanes a term
-  float** factors_;        // the planes' memory
-  std::uint32_t* points_;  // a row of hashes below, one above
+  bool fresh_ = true;      // no lines are left
+  float* lines_;           // kLines a term
+  Plane* planes_;          // kMaxPlanes a term
+  float** factors_;        // of a term
+  std::uint32_t* points_;  // published hashes: of a line, a plane, the lower corners, then the upper ones
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE

@@ -62,7 +62,7 @@ struct NoiseParams {
   std::int64_t seed = 0;
   Table table = Table::kSeeded;
   glm::dvec3 offset{0.0};
-  std::optional<double> time;
+  std::optional<double> time = std::nullopt;
   double timePeriod = 0.0;
   double timeLacunarity = 2.0;
 };

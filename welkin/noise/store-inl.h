@@ -119,34 +119,47 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
   }
 }
 
-template <Format kFormat>
-HWY_INLINE void storeRowIn(const FillJob& job, const float* const* rows, int count, std::size_t at) {
-  switch (job.channels) {
-    case 1:
-      return storeRowAs<kFormat, 1>(job, rows, count, at);
-    case 2:
-      return storeRowAs<kFormat, 2>(job, rows, count, at);
-    case 3:
-      return storeRowAs<kFormat, 3>(job, rows, count, at);
-    default:
-      return storeRowAs<kFormat, 4>(job, rows, count, at);
+// Rows of a block, from sample x of row y and slice z of the box on; each `stride` floats behind the one
+// before.
+template <Format kFormat, int kChannels>
+HWY_NOINLINE void storeRowsAs(const FillJob& job, const float* const* channels, int stride, int x, int y,
+                              int z, int width, int rows) {
+  const glm::ivec3& size = job.box.size;
+  for (int r = 0; r < rows; ++r) {
+    const float* row[kChannels];
+    for (int c = 0; c < kChannels; ++c) row[c] = channels[c] + static_cast<std::ptrdiff_t>(r) * stride;
+    storeRowAs<kFormat, kChannels>(
+        job, row, width,
+        ((static_cast<std::size_t>(z) * size.y + y + r) * size.x + x) * std::size_t{kChannels});
   }
 }
 
-// A row of a block, from sample x of row y and slice z of the box on.
-inline void storeRow(const FillJob& job, const float* const* rows, int x, int y, int z, int count) {
-  const glm::ivec3& size = job.box.size;
-  const std::size_t at =
-      ((static_cast<std::size_t>(z) * size.y + y) * size.x + x) * static_cast<std::size_t>(job.channels);
+template <Format kFormat>
+HWY_INLINE void storeRowsIn(const FillJob& job, const float* const* channels, int stride, int x, int y, int z,
+                            int width, int rows) {
+  switch (job.channels) {
+    case 1:
+      return storeRowsAs<kFormat, 1>(job, channels, stride, x, y, z, width, rows);
+    case 2:
+      return storeRowsAs<kFormat, 2>(job, channels, stride, x, y, z, width, rows);
+    case 3:
+      return storeRowsAs<kFormat, 3>(job, channels, stride, x, y, z, width, rows);
+    default:
+      return storeRowsAs<kFormat, 4>(job, channels, stride, x, y, z, width, rows);
+  }
+}
+
+inline void storeRows(const FillJob& job, const float* const* channels, int stride, int x, int y, int z,
+                      int width, int rows) {
   switch (job.format) {
     case Format::kUint8:
-      return storeRowIn<Format::kUint8>(job, rows, count, at);
+      return storeRowsIn<Format::kUint8>(job, channels, stride, x, y, z, width, rows);
     case Format::kUint16:
-      return storeRowIn<Format::kUint16>(job, rows, count, at);
+      return storeRowsIn<Format::kUint16>(job, channels, stride, x, y, z, width, rows);
     case Format::kHalf:
-      return storeRowIn<Format::kHalf>(job, rows, count, at);
+      return storeRowsIn<Format::kHalf>(job, channels, stride, x, y, z, width, rows);
     case Format::kFloat:
-      return storeRowIn<Format::kFloat>(job, rows, count, at);
+      return storeRowsIn<Format::kFloat>(job, channels, stride, x, y, z, width, rows);
   }
 }
 
