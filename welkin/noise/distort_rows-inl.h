@@ -19,15 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace welkin::noise::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-HWY_INLINE VU mixedWords(VU h) {
-  const Words du;
-  h = hn::Xor(h, hn::ShiftRight<16>(h));
-  h = hn::Mul(h, hn::Set(du, 0x85ebca6bu));
-  h = hn::Xor(h, hn::ShiftRight<13>(h));
-  h = hn::Mul(h, hn::Set(du, 0xc2b2ae35u));
-  return hn::Xor(h, hn::ShiftRight<16>(h));
-}
-
 // A vector of places on one axis.
 struct Places {
   VU lowHash, highHash;

@@ -92,6 +92,7 @@ struct LineRef {
 // The lines of one octave that a chunk of rows needs: first those that the chunk before has left.
 struct ChunkLines {
   const LineRef* line;
+  const std::uint32_t* hash;  // their indices' hashes; vectors are read, so that more follow
   std::uint32_t left, count;
 };
 

@@ -276,11 +276,13 @@ class Tables {
   void addRows(GradientTables& g, int t, const Line& y, float scale) {
     const int rows = job_.box.size.y, chunks = chunkCount(g);
     LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * kLines);
+    auto* hash = memory_.take<std::uint32_t>(static_cast<std::size_t>(chunks) * kLines + kPad);
     std::uint32_t slot = 0;
+    const Axis& axis = g.term[t].lattice->axis(1);
     const LineRef* last[2] = {};  // of the row before
     for (int c = 0; c < chunks; ++c) {
       ChunkLines& chunk = g.chunks[static_cast<std::size_t>(c) * g.terms + t];
-      chunk = {next, 0, 0};
+      chunk = {next, hash, 0, 0};
       for (const LineRef*& l : last)
         if (l != nullptr && (l == last[0] || l->index != last[0]->index)) {
           next[chunk.count] = *l;
@@ -306,7 +308,9 @@ class Tables {
              scale * w.highReach[row]},
             {low->offset, high->offset}};
       }
+      for (std::uint32_t i = 0; i < chunk.count; ++i) hash[i] = axis.hash(next[i].index);
       next += chunk.count;
+      hash += chunk.count;
     }
   }
 

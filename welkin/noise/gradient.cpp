@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/noise/gradient.h"
 
-#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -21,43 +20,6 @@ const std::array<std::uint8_t, 256> kPublishedPermutation = {
     238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
     181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,
     222, 114, 67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
-
-std::array<float, 4> gradientOf(int axes, std::uint32_t hash) {
-  const auto sign = [hash](int bit) { return (hash >> bit & 1u) == 0 ? 1.0f : -1.0f; };
-  if (axes == 2) {
-    const float across = 1.3046875f, along = 0.54296875f;  // sqrt(2) times cosine and sine of 22.5 degrees
-    return (hash & 4) == 0 ? std::array<float, 4>{sign(0) * across, sign(1) * along}
-                           : std::array<float, 4>{sign(0) * along, sign(1) * across};
-  }
-  std::array<float, 4> g{};
-  if (axes == 3) {
-    const std::uint32_t h = hash & 15;
-    const int u = h < 8 ? 0 : 1, v = h < 4 ? 1 : (h == 12 || h == 14 ? 0 : 2);
-    g[u] = sign(0);
-    g[v] = sign(1);
-    return g;
-  }
-  const int zero = static_cast<int>(hash >> 2 & 3u);
-  const float signs[3] = {sign(0), sign(1), sign(0) * sign(1) * (zero < 2 ? 1.0f : -1.0f)};
-  for (int i = 0, n = 0; i < 4; ++i)
-    if (i != zero) g[i] = signs[n++];
-  return g;
-}
-
-const GradientBytes& gradientBytes(int axes) {
-  static const std::array<GradientBytes, 3> tables = [] {
-    std::array<GradientBytes, 3> made{};
-    for (int n = 2; n <= 4; ++n)
-      for (std::uint32_t h = 0; h < 16; ++h)
-        for (int i = 0; i < n; ++i) {
-          const auto bits =
-              std::bit_cast<std::uint32_t>(gradientOf(n, h & (n == 2 ? 7 : 15))[i] * gradientBytesScale(n));
-          made[n - 2].component[i][h] = static_cast<std::uint8_t>(n == 2 && h >= 8 ? bits >> 16 : bits >> 24);
-        }
-    return made;
-  }();
-  return tables[axes - 2];
-}
 
 GradientLattice::GradientLattice(int axes, const std::array<Axis, 4>& axis, bool published)
     : axes_(axes), axis_(axis), published_(published) {

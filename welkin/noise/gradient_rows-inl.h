@@ -27,12 +27,22 @@ using Bytes = hn::Repartition<std::uint8_t, Words>;
 using VF = hn::Vec<Floats>;
 using VU = hn::Vec<Words>;
 
+// mix32() of each lane.
+HWY_INLINE VU mixedWords(VU h) {
+  const Words du;
+  h = hn::Xor(h, hn::ShiftRight<16>(h));
+  h = hn::Mul(h, hn::Set(du, 0x85ebca6bu));
+  h = hn::Xor(h, hn::ShiftRight<13>(h));
+  h = hn::Mul(h, hn::Set(du, 0xc2b2ae35u));
+  return hn::Xor(h, hn::ShiftRight<16>(h));
+}
+
 // Components of gradients by look-up of bytes. With three and four axes the upper byte of +-2 or 0
 // (GradientBytes::kScale undoes the 2), with two axes the upper two bytes.
 template <int kAxes>
 struct Gradients {
   HWY_INLINE Gradients() {
-    for (int a = 0; a < kAxes; ++a) table[a] = hn::LoadDup128(Bytes(), gradientBytes(kAxes).component[a]);
+    for (int a = 0; a < kAxes; ++a) table[a] = hn::LoadDup128(Bytes(), kGradientBytes<kAxes>.component[a]);
   }
 
   // Where in the tables the gradient of a point hash is: the indices of the bytes of each component, 0x80 and
@@ -75,15 +85,16 @@ class GradientRows {
     fresh_ = true;
   }
 
-  // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. Row r of
-  // sum s goes to out[s] + r * kStrip. Chunks of a slice must follow one another.
+  // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. Row r
+  // of sum s goes to out[s] + r * kStrip. Chunks of a slice must follow one another.
   int fillChunk(int y, int rows, float* const* out) {
     const int chunk = (y + tables_.lead) / kChunk;
     rows = HWY_MIN(rows, (chunk + 1) * kChunk - tables_.lead - y);
     const ChunkLines* lines = tables_.chunks + static_cast<std::ptrdiff_t>(chunk) * tables_.terms;
     for (int t = 0; t < tables_.terms; ++t) {
       const std::uint32_t left = fresh_ ? 0 : lines[t].left;
-      if (left < lines[t].count) expand(t, lines[t].line + left, static_cast<int>(lines[t].count - left));
+      if (left < lines[t].count)
+        expand(t, lines[t].line + left, lines[t].hash + left, static_cast<int>(lines[t].count - left));
     }
     fresh_ = false;
     for (int s = 0; s < tables_.sums; ++s) {
@@ -145,19 +156,19 @@ class GradientRows {
     }
   }
 
-  void expand(int t, const LineRef* lines, int count) {
+  void expand(int t, const LineRef* lines, const std::uint32_t* hashes, int count) {
     switch (tables_.term[t].lattice->axes()) {
       case 2:
-        return expandLines<2>(t, lines, count);
+        return expandLines<2>(t, lines, hashes, count);
       case 3:
-        return expandLines<3>(t, lines, count);
+        return expandLines<3>(t, lines, hashes, count);
       default:
-        return expandLines<4>(t, lines, count);
+        return expandLines<4>(t, lines, hashes, count);
     }
   }
 
   template <int kAxes>
-  HWY_NOINLINE void expandLines(int t, const LineRef* lines, int count) {
+  HWY_NOINLINE void expandLines(int t, const LineRef* lines, const std::uint32_t* hashes, int count) {
     const Floats d;
     const Words du;
     const TermTables& term = tables_.term[t];
@@ -166,13 +177,12 @@ class GradientRows {
     const std::uint32_t* HWY_RESTRICT lowHash = term.x.lowHash + x_;
     const std::uint32_t* HWY_RESTRICT highHash = term.x.highHash + x_;
     std::ptrdiff_t lineHashes = 0, planeHashes = 0;  // distances of their hashes
-    std::uint32_t rows[kLines][kPlanes];
-    float* HWY_RESTRICT out[kLines];
-    for (int n = 0; n < count; ++n) {
-      out[n] = lines_ + lines[n].offset;
-      const std::uint32_t hash = term.lattice->axis(1).hash(lines[n].index);
-      for (int p = 0; p < kPlanes; ++p) rows[n][p] = rowHash(hash + planes_[kMaxPlanes * t + p].hash);
-    }
+    HWY_ALIGN std::uint32_t rows[kPlanes][padded(kLines)];
+    for (int p = 0; p < kPlanes; ++p)
+      for (int n = 0; n < count; n += static_cast<int>(hn::Lanes(du))) {
+        const auto sum = hn::Add(hn::LoadU(du, hashes + n), hn::Set(du, planes_[kMaxPlanes * t + p].hash));
+        hn::Store(hn::Or(mixedWords(sum), hn::Set(du, 1u)), du, rows[p] + n);
+      }
     if (term.lattice->published()) {
       planeHashes = std::ptrdiff_t{2} * kStrip;
       lineHashes = planeHashes * kPlanes;
@@ -180,30 +190,65 @@ class GradientRows {
         for (int p = 0; p < kPlanes; ++p) {
           publishedHashes(term, lines[n].index, planes_[kMaxPlanes * t + p].index,
                           points_ + n * lineHashes + p * planeHashes);
-          rows[n][p] = 1;
+          rows[p][n] = 1;
         }
       lowHash = points_;
       highHash = points_ + kStrip;
     }
+    // Two lines at a time share the loads of factors.
+    int n = 0;
+    for (; n + 2 <= count; n += 2)
+      expandSome<kAxes, 2>(t, lowHash + n * lineHashes, highHash + n * lineHashes, lineHashes, planeHashes,
+                           lines + n, &rows[0][n], padded(kLines));
+    if (n < count)
+      expandSome<kAxes, 1>(t, lowHash + n * lineHashes, highHash + n * lineHashes, lineHashes, planeHashes,
+                           lines + n, &rows[0][n], padded(kLines));
+  }
+
+  template <int kAxes, int kCount>
+  HWY_INLINE void expandSome(int t, const std::uint32_t* HWY_RESTRICT lowHash,
+                             const std::uint32_t* HWY_RESTRICT highHash, std::ptrdiff_t lineHashes,
+                             std::ptrdiff_t planeHashes, const LineRef* lines, const std::uint32_t* rows,
+                             int rowStride) const {
+    const Floats d;
+    const Words du;
+    constexpr int kPlanes = 1 << (kAxes - 2);
+    const Gradients<kAxes> gradients;
     const float* HWY_RESTRICT factors = factors_[t];
+    float* HWY_RESTRICT out[kCount];
+    VU row[kPlanes][kCount];
+    for (int n = 0; n < kCount; ++n) {
+      out[n] = lines_ + lines[n].offset;
+      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * rowStride + n]);
+    }
     const int width = width_;
     for (int i = 0; i < width; i += static_cast<int>(hn::Lanes(d))) {
-      for (int n = 0; n < count; ++n) {
-        auto a = hn::Zero(d), b = hn::Zero(d);
-        for (int p = 0; p < kPlanes; ++p) {
-          const auto row = hn::Set(du, rows[n][p]);
+      VF a[kPlanes][kCount], b[kPlanes][kCount];  // apart, for short chains of additions
+      for (int p = 0; p < kPlanes; ++p) {
+        VU low[kCount], high[kCount];
+        for (int n = 0; n < kCount; ++n) {
           const std::ptrdiff_t at = n * lineHashes + p * planeHashes + i;
-          const auto low = gradients.where(hn::Mul(hn::LoadU(du, lowHash + at), row));
-          const auto high = gradients.where(hn::Mul(hn::LoadU(du, highHash + at), row));
-          for (int c = 0; c < kAxes; ++c) {
-            const float* factor = factors + std::ptrdiff_t{2} * (p * kAxes + c) * kStrip + i;
-            auto& to = c == 1 ? b : a;
-            to = hn::MulAdd(gradients.component(c, low), hn::Load(d, factor), to);
-            to = hn::MulAdd(gradients.component(c, high), hn::Load(d, factor + kStrip), to);
-          }
+          low[n] = gradients.where(hn::Mul(hn::LoadU(du, lowHash + at), row[p][n]));
+          high[n] = gradients.where(hn::Mul(hn::LoadU(du, highHash + at), row[p][n]));
         }
-        hn::Store(a, d, out[n] + i);
-        hn::Store(b, d, out[n] + kStrip + i);
+        for (int c = 0; c < kAxes; ++c) {
+          const float* factor = factors + std::ptrdiff_t{2} * (p * kAxes + c) * kStrip + i;
+          const auto atLow = hn::Load(d, factor), atHigh = hn::Load(d, factor + kStrip);
+          VF* to = c == 1 ? b[p] : a[p];
+          for (int n = 0; n < kCount; ++n) {
+            const auto g = gradients.component(c, low[n]);
+            to[n] = c < 2 ? hn::Mul(g, atLow) : hn::MulAdd(g, atLow, to[n]);
+          }
+          for (int n = 0; n < kCount; ++n) to[n] = hn::MulAdd(gradients.component(c, high[n]), atHigh, to[n]);
+        }
+      }
+      for (int n = 0; n < kCount; ++n) {
+        for (int p = 1; p < kPlanes; ++p) {
+          a[0][n] = hn::Add(a[0][n], a[p][n]);
+          b[0][n] = hn::Add(b[0][n], b[p][n]);
+        }
+        hn::Store(a[0][n], d, out[n] + i);
+        hn::Store(b[0][n], d, out[n] + kStrip + i);
       }
     }
   }
@@ -228,45 +273,67 @@ class GradientRows {
     return hn::MulAdd(w, hn::MulSub(hn::Mul(two, rest), rest, one), sum);
   }
 
-  template <Fractal kFractal>
-  static HWY_INLINE VF added(VF sum, const float* low, const float* high, VF w0, VF r0, VF w1, VF r1,
-                             float weight) {
+  // Two rows by four vectors of sums, in registers: chains of additions enough to hide their latency.
+  static constexpr int kPair = 2, kVectors = 4;
+  using Sums = VF[kPair][kVectors];
+
+  // Adds one octave. Rows between the same lines (kShared) share the loads of these.
+  template <bool kShared>
+  HWY_INLINE void addOctave(const RowPlace& first, const RowPlace& second, int i, Sums& n) const {
     const Floats d;
-    auto n = kFractal == Fractal::kFbm ? sum : hn::Zero(d);
-    n = hn::MulAdd(w0, hn::Load(d, low), n);
-    n = hn::MulAdd(r0, hn::Load(d, low + kStrip), n);
-    n = hn::MulAdd(w1, hn::Load(d, high), n);
-    n = hn::MulAdd(r1, hn::Load(d, high + kStrip), n);
-    if constexpr (kFractal == Fractal::kFbm) return n;
-    return shaped<kFractal>(n, sum, weight);
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+    for (int k = 0; k < 4; ++k) {
+      const float* HWY_RESTRICT line0 = lines_ + first.lines[k / 2] + (k % 2) * kStrip + i;
+      const float* HWY_RESTRICT line1 = lines_ + second.lines[k / 2] + (k % 2) * kStrip + i;
+      const auto w0 = hn::Set(d, first.weights[k]), w1 = hn::Set(d, second.weights[k]);
+      for (int v = 0; v < kVectors; ++v) {
+        const auto x0 = hn::Load(d, line0 + v * lanes);
+        const auto x1 = kShared ? x0 : hn::Load(d, line1 + v * lanes);
+        n[0][v] = hn::MulAdd(w0, x0, n[0][v]);
+        n[1][v] = hn::MulAdd(w1, x1, n[1][v]);
+      }
+    }
+  }
+
+  static HWY_INLINE void setAll(Sums& n, VF value) {
+    for (auto& row : n)
+      for (auto& v : row) v = value;
   }
 
   template <Fractal kFractal>
   HWY_INLINE void sum(int first, int terms, const RowPlace* places, int rows, float* HWY_RESTRICT out) const {
     const Floats d;
-    const int lanes = static_cast<int>(hn::Lanes(d)), width = width_;
-    const auto bias = hn::Set(d, tables_.bias);
-    const float* HWY_RESTRICT lines = lines_;
-    for (int r = 0; r < rows; ++r, places += tables_.terms, out += kStrip)
-      for (int i = 0; i < width; i += 4 * lanes) {
-        auto s0 = bias, s1 = bias, s2 = bias, s3 = bias;
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+    const int width = width_;
+    for (int r = 0; r < rows;
+         r += kPair, places += std::ptrdiff_t{kPair} * tables_.terms, out += kPair * kStrip) {
+      // A last row alone is its own partner; the chunk has room for what that gives.
+      const RowPlace* partner = r + 1 < rows ? places + tables_.terms : places;
+      for (int i = 0; i < width; i += kVectors * static_cast<int>(lanes)) {
+        Sums s;
+        setAll(s, hn::Set(d, tables_.bias));
         for (int t = 0; t < terms; ++t) {
-          const RowPlace& p = places[t];
-          const float* low = lines + p.lines[0] + i;
-          const float* high = lines + p.lines[1] + i;
-          const auto w0 = hn::Set(d, p.weights[0]), r0 = hn::Set(d, p.weights[1]);
-          const auto w1 = hn::Set(d, p.weights[2]), r1 = hn::Set(d, p.weights[3]);
-          const float w = kFractal == Fractal::kFbm ? 0.0f : tables_.term[first + t].weight;
-          s0 = added<kFractal>(s0, low, high, w0, r0, w1, r1, w);
-          s1 = added<kFractal>(s1, low + lanes, high + lanes, w0, r0, w1, r1, w);
-          s2 = added<kFractal>(s2, low + 2 * lanes, high + 2 * lanes, w0, r0, w1, r1, w);
-          s3 = added<kFractal>(s3, low + 3 * lanes, high + 3 * lanes, w0, r0, w1, r1, w);
+          const bool shared =
+              places[t].lines[0] == partner[t].lines[0] && places[t].lines[1] == partner[t].lines[1];
+          if constexpr (kFractal == Fractal::kFbm) {
+            if (shared)
+              addOctave<true>(places[t], partner[t], i, s);
+            else
+              addOctave<false>(places[t], partner[t], i, s);
+          } else {
+            Sums n;
+            setAll(n, hn::Zero(d));
+            addOctave<false>(places[t], partner[t], i, n);
+            for (int row = 0; row < kPair; ++row)
+              for (int v = 0; v < kVectors; ++v)
+                s[row][v] = shaped<kFractal>(n[row][v], s[row][v], tables_.term[first + t].weight);
+          }
         }
-        hn::Store(s0, d, out + i);
-        hn::Store(s1, d, out + i + lanes);
-        hn::Store(s2, d, out + i + 2 * lanes);
-        hn::Store(s3, d, out + i + 3 * lanes);
+        for (int row = 0; row < kPair; ++row)
+          for (int v = 0; v < kVectors; ++v)
+            hn::Store(s[row][v], d, out + static_cast<std::ptrdiff_t>(row) * kStrip + i + v * lanes);
       }
+    }
   }
 
   const GradientTables& tables_;

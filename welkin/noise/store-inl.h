@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "welkin/noise/fill.h"
 
@@ -67,7 +68,7 @@ template <Format kFormat, class D, class V = hn::Vec<D>>
 HWY_INLINE auto converted(const FillJob& job, D d, V v) {
   if constexpr (kFormat == Format::kUint8 || kFormat == Format::kUint16) {
     using T = typename FormatTraits<kFormat>::Type;
-    v = hn::Clamp(v, hn::Set(d, job.low), hn::Set(d, job.high));
+    // The clamp of normalised values is within that of integers.
     v = hn::MulAdd(v, hn::Set(d, job.quantiseScale), hn::Set(d, job.quantiseBias));
     v = hn::Clamp(v, hn::Zero(d), hn::Set(d, static_cast<float>(hwy::HighestValue<T>())));
     return hn::DemoteTo(hn::Rebind<T, D>(), hn::NearestInt(v));
@@ -91,16 +92,12 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
   // Past the caches only where whole vectors are stored to their own multiples.
   const bool stream = kFormat == Format::kFloat && kChannels == 1 && job.stream &&
                       reinterpret_cast<std::uintptr_t>(out) % (sizeof(T) * lanes) == 0;
-  HWY_ALIGN T rest[4 * hn::MaxLanes(hn::ScalableTag<float>())];
-  for (int i = 0; i < count; i += lanes) {
-    const bool whole = i + lanes <= count;
-    T* to = whole ? out + static_cast<std::ptrdiff_t>(i) * kChannels : rest;
+  const auto storeAt = [&](int i, T* to, auto streamed) HWY_ATTR {
     const auto v0 = converted<kFormat>(job, d, hn::LoadU(d, rows[0] + i));
-    if constexpr (kChannels == 1) {
-      if (stream && whole)
-        hn::Stream(v0, dt, to);
-      else
-        hn::StoreU(v0, dt, to);
+    if constexpr (kChannels == 1 && decltype(streamed)::value) {
+      hn::Stream(v0, dt, to);
+    } else if constexpr (kChannels == 1) {
+      hn::StoreU(v0, dt, to);
     } else {
       const auto v1 = converted<kFormat>(job, d, hn::LoadU(d, rows[1] + i));
       if constexpr (kChannels == 2) {
@@ -113,9 +110,20 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
           hn::StoreInterleaved4(v0, v1, v2, converted<kFormat>(job, d, hn::LoadU(d, rows[3] + i)), dt, to);
       }
     }
-    if (!whole)
-      std::memcpy(out + static_cast<std::ptrdiff_t>(i) * kChannels, rest,
-                  sizeof(T) * static_cast<std::size_t>(count - i) * kChannels);
+  };
+  int i = 0;
+  if (stream) {
+    if constexpr (kFormat == Format::kFloat)
+      for (; i + lanes <= count; i += lanes) storeAt(i, out + i, std::true_type());
+  } else {
+    for (; i + lanes <= count; i += lanes)
+      storeAt(i, out + static_cast<std::ptrdiff_t>(i) * kChannels, std::false_type());
+  }
+  if (i < count) {
+    HWY_ALIGN T rest[4 * hn::MaxLanes(hn::ScalableTag<float>())];
+    storeAt(i, rest, std::false_type());
+    std::memcpy(out + static_cast<std::ptrdiff_t>(i) * kChannels, rest,
+                sizeof(T) * static_cast<std::size_t>(count - i) * kChannels);
   }
 }
 
