@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/noise_bench.h"
+
+#include <benchmark/benchmark.h>
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "welkin/core/parallel.h"
+#include "welkin/noise/noise.h"
+
+namespace welkin::bench {
+namespace {
+
+using noise::Grid;
+using noise::Kind;
+using noise::Noise;
+using noise::NoiseParams;
+
+// Memory by pages' own alignment, kept for the next benchmark: the first touch of fresh pages costs more than
+// the noise on them.
+std::byte* buffer(std::size_t bytes) {
+  static std::vector<std::byte> memory;
+  constexpr std::size_t kPage = 4096;
+  if (memory.size() < bytes + kPage) memory.assign(bytes + kPage, std::byte{1});
+  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+  return memory.data() + (kPage - address % kPage) % kPage;
+}
+
+struct Workload {
+  std::string name;
+  NoiseParams params;
+  int size;  // samples across
+  bool bytes;
+
+  Grid grid(int across) const {
+    const glm::ivec3 samples(across, across, params.dimensions == 3 ? across : 1);
+    return params.tile ? Grid::tile(samples) : Grid{samples, glm::dvec3(1.0)};
+  }
+};
+
+std::vector<Workload> workloads() {
+  const auto cells = [](double n) { return glm::dvec3(n); };
+  return {
+      {"W1", {.frequency = cells(6), .octaves = 6}, 128, true},
+      {"W2", {.dimensions = 2, .frequency = cells(3), .octaves = 10}, 1024, true},
+      {"W3", {.tile = false, .frequency = cells(0.02), .octaves = 1}, 256, false},
+      {"W4", {.tile = false, .frequency = cells(0.05), .octaves = 5}, 256, false},
+      {"W5", {.kind = Kind::kCellular, .frequency = cells(8), .octaves = 1}, 128, false},
+      {"W6", {.kind = Kind::kPerlinWorley, .frequency = cells(4), .octaves = 3}, 128, true},
+  };
+}
+
+void setCounter(benchmark::State& state, double samples) {
+  using benchmark::Counter;
+  // Seconds a sample times 1e9.
+  state.counters["ns_per_sample"] =
+      Counter(samples * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
+}
+
+template <class T>
+void fill(benchmark::State& state, const Workload& w, int across) {
+  const Noise noise(w.params);
+  const Grid grid = w.grid(across);
+  const std::size_t samples = static_cast<std::size_t>(grid.size.x) * grid.size.y * grid.size.z;
+  const std::size_t values = samples * static_cast<std::size_t>(noise.channels());
+  const std::span<T> out(reinterpret_cast<T*>(buffer(values * sizeof(T))), values);
+  noise.fill(grid, out);
+  for (auto _ : state) {
+    noise.fill(grid, out);
+    benchmark::ClobberMemory();
+  }
+  setCounter(state, static_cast<double>(samples));
+}
+
+void add(const Workload& w, std::int64_t target, int threads, int across) {
+  const std::string set = target == HWY_AVX3 ? "AVX-512" : hwy::TargetName(target);
+  const std::string name =
+      w.name + "/" + set + "/" + std::to_string(threads) + "/" + std::to_string(across);
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 hwy::SetSupportedTargetsForTest(target);
+                                 const int before = threadCount();
+                                 setThreadCount(threads);
+                                 if (w.bytes)
+                                   fill<std::uint8_t>(state, w, across);
+                                 else
+                                   fill<float>(state, w, across);
+                                 setThreadCount(before);
+                                 hwy::SetSupportedTargetsForTest(0);
+                               })
+      ->UseRealTime();
+}
+
+// Floats written past the caches, 64 MiB of them.
+void writeMemory(benchmark::State& state) {
+  constexpr std::size_t kFloats = std::size_t{16} << 20;
+  auto* out = reinterpret_cast<float*>(buffer(kFloats * sizeof(float)));
+  const hwy::HWY_NAMESPACE::ScalableTag<float> d;
+  const auto value = hwy::HWY_NAMESPACE::Set(d, 1.0f);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kFloats; i += hwy::HWY_NAMESPACE::Lanes(d))
+      hwy::HWY_NAMESPACE::Stream(value, d, out + i);
+    hwy::FlushStream();
+    benchmark::ClobberMemory();
+  }
+  setCounter(state, kFloats);
+}
+
+}  // namespace
+
+void registerNoiseBenchmarks() {
+  benchmark::RegisterBenchmark("write/float", writeMemory)->UseRealTime();
+  const std::int64_t supported = hwy::SupportedTargets();
+  std::vector<std::int64_t> targets;  // best first
+  for (const std::int64_t t : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}})
+    if ((supported & t) != 0) targets.push_back(t);
+  if (targets.empty()) targets.push_back(supported & -supported);
+  for (const Workload& w : workloads()) {
+    for (const std::int64_t t : targets) add(w, t, 1, w.size);
+    add(w, targets[0], 2, w.size);
+  }
+  for (const Workload& w : workloads())
+    if (w.name == "W1" || w.name == "W4")
+      for (const int across : {64, 128, 256, 512})
+        if (across != w.size) add(w, targets[0], 1, across);
+}
+
+}  // namespace welkin::bench

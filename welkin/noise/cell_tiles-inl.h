@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blocks of cellular noise. Compiled for every instruction set.
+//
+// A block is cut into tiles of 8 samples along x by a few rows and slices, small against a cell. For each
+// tile the feature points that can be nearest to any of its samples are found first: those whose least
+// distance to the tile's box is not above the smallest of all points' greatest distances. Some four are left
+// of 27 or more, and the samples look at these alone. The result is exact.
+//
+// Tiles lie at multiples of their size in the whole grid, and positions are relative to the cell of their
+// first sample, so that a sample's value does not depend on the box that is filled.
+#if defined(WELKIN_NOISE_CELL_TILES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef WELKIN_NOISE_CELL_TILES_INL_H_
+#undef WELKIN_NOISE_CELL_TILES_INL_H_
+#else
+#define WELKIN_NOISE_CELL_TILES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "welkin/noise/fill.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace welkin::noise::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// One octave of cells over one block.
+class CellTiles {
+ public:
+  using D = hn::CappedTag<float, kTileX>;
+  using DU = hn::RebindToUnsigned<D>;
+  using DI = hn::RebindToSigned<D>;
+  using V = hn::Vec<D>;
+
+  // The block's x, y and z are relative to the tables' first and multiples of the tiles' sizes.
+  CellTiles(const CellTables& tables, const Block& block, Scratch& scratch)
+      : tables_(tables), block_(block), lanes_(static_cast<int>(hn::Lanes(D()))) {
+    makePoints(scratch);
+    const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
+    for (auto& q : near_) q = scratch.take<float>(most);
+    away_ = scratch.take<float>(most);
+  }
+
+  // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
+  // there.
+  void fill(Feature feature, float weight, float bias, bool add, float* out, int stride) {
+    out_ = out;
+    outStride_ = stride;
+    weight_ = weight;
+    bias_ = bias;
+    add_ = add;
+    const int ty = tables_.tile[1], tz = tables_.tile[2];
+    for (int z = 0; z < block_.slices; z += tz)
+      for (int y = 0; y < block_.rows; y += ty)
+        for (int x = 0; x < block_.width; x += kTileX) {
+          findNear(x, y, z, feature != Feature::kF1);
+          switch (feature) {
+            case Feature::kF1:
+              fillTile<Feature::kF1>(x, y, z);
+              break;
+            case Feature::kF2:
+              fillTile<Feature::kF2>(x, y, z);
+              break;
+            case Feature::kF2MinusF1:
+              fillTile<Feature::kF2MinusF1>(x, y, z);
+              break;
+          }
+        }
+  }
+
+ private:
+  const CellPlaces& axis(int a) const { return tables_.axis[a]; }
+  int first(int a) const { return a == 0 ? block_.x : a == 1 ? block_.y : block_.z; }
+  int samples(int a) const { return a == 0 ? block_.width : a == 1 ? block_.rows : block_.slices; }
+
+  // Places of the feature points in all cells of the block and kCellReach around, each within its cell.
+  void makePoints(Scratch& scratch) {
+    const CellLattice& lattice = *tables_.lattice;
+    std::uint32_t* hashes[3] = {};
+    for (int a = 0; a < 3; ++a) {
+      const bool flat = a >= lattice.axes();
+      reach_[a] = flat ? 0 : kCellReach;
+      const int begin = flat ? 0 : axis(a).cell[first(a)];
+      const int end = flat ? 0 : axis(a).cell[first(a) + samples(a) - 1];
+      origin_[a] = begin - reach_[a];
+      count_[a] = end - begin + 1 + 2 * reach_[a];
+      hashes[a] = scratch.take<std::uint32_t>(static_cast<std::size_t>(padded(count_[a] + kTileX)));
+      for (int i = 0; i < count_[a]; ++i)
+        hashes[a][i] =
+            flat ? 0 : lattice.axis(a).hash(lattice.axis(a).moved(axis(a).index[first(a)], i - reach_[a]));
+    }
+    // A vector may reach over the last cell.
+    stride_ = count_[0] + kTileX;
+    const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
+    for (int a = 0; a < lattice.axes(); ++a) points_[a] = scratch.take<float>(most);
+    const DU du;
+    const D d;
+    for (int k = 0; k < count_[2]; ++k)
+      for (int j = 0; j < count_[1]; ++j) {
+        const std::uint32_t row = hashes[1][j] + hashes[2][k];
+        const std::size_t at = rowAt(j, k);
+        if (lattice.moves()) {
+          for (int i = 0; i < count_[0]; ++i) {
+            const FeaturePlace p = lattice.place(hashes[0][i] + row);
+            for (int a = 0; a < lattice.axes(); ++a) points_[a][at + i] = p.inside[a];
+          }
+        } else {
+          for (int i = 0; i < count_[0]; i += lanes_) {
+            const auto sum = hn::Add(hn::LoadU(du, hashes[0] + i), hn::Set(du, row));
+            for (int a = 0; a < lattice.axes(); ++a) {
+              const auto h = mixed(hn::Add(sum, hn::Set(du, CellLattice::kAxisStep * (a + 1u))));
+              const auto upper = hn::ConvertTo(d, hn::BitCast(DI(), hn::ShiftRight<8>(h)));
+              hn::StoreU(hn::Mul(upper, hn::Set(d, CellLattice::kUnit)), d, points_[a] + at + i);
+            }
+          }
+        }
+        // What stands behind the row's last cell is no point.
+        for (int i = count_[0]; i < stride_; ++i) points_[0][at + i] = kFar;
+      }
+  }
+
+  static HWY_INLINE hn::Vec<DU> mixed(hn::Vec<DU> h) {
+    const DU du;
+    h = hn::Xor(h, hn::ShiftRight<16>(h));
+    h = hn::Mul(h, hn::Set(du, 0x85ebca6bu));
+    h = hn::Xor(h, hn::ShiftRight<13>(h));
+    h = hn::Mul(h, hn::Set(du, 0xc2b2ae35u));
+    return hn::Xor(h, hn::ShiftRight<16>(h));
+  }
+
+  std::size_t rowAt(int j, int k) const {
+    return (static_cast<std::size_t>(k) * count_[1] + j) * static_cast<std::size_t>(stride_);
+  }
+
+  // The box of a tile: its cells and the places of its first and last sample relative to the first's cell.
+  struct Extent {
+    int cell;   // of the first sample, in points_
+    int cells;  // from there to the last sample's
+    float lo, hi;
+  };
+  Extent extent(int a, int sample, int count) const {
+    const CellPlaces& p = axis(a);
+    const int begin = first(a) + sample, end = begin + count - 1;
+    const int cells = p.cell[end] - p.cell[begin];
+    return {p.cell[begin] - origin_[a], cells, p.inside[begin], static_cast<float>(cells) + p.inside[end]};
+  }
+
+  void findNear(int x, int y, int z, bool second) {
+    const bool solid = tables_.lattice->axes() == 3;
+    box_[0] = extent(0, x, kTileX);
+    box_[1] = extent(1, y, tables_.tile[1]);
+    box_[2] = solid ? extent(2, z, tables_.tile[2]) : Extent{0, 0, 0.0f, 0.0f};
+    // Points outside the cells beside the tile's are at least so far away.
+    float margin = 1.0f;
+    for (int a = 0; a < tables_.lattice->axes(); ++a)
+      margin = std::min({margin, box_[a].lo, static_cast<float>(box_[a].cells + 1) - box_[a].hi});
+    const float safe = 1.0f + std::max(margin, 0.0f);
+    const float enough = solid ? 3.0f : 2.0f;  // no sample's second point is farther
+    const float limit = std::min(collect(1, enough, second), enough);
+    if (limit > safe * safe) collect(kCellReach, enough, second);
+  }
+
+  // Collects the points that can matter among those at most `reach` cells from the tile's; returns the square
+  // of the distance within which they lie.
+  float collect(int reach, float enough, bool second) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    const int deep = solid ? reach : 0;
+    const auto loX = hn::Set(d, box_[0].lo), hiX = hn::Set(d, box_[0].hi);
+    const int across = box_[0].cells + 1 + 2 * reach;
+    const auto zero = hn::Zero(d), far = hn::Set(d, kFar);
+    auto first = far, next = far;  // least and second least of the greatest distances' squares, by lane
+    std::size_t n = 0;
+    for (int k = -deep; k <= box_[2].cells + deep; ++k)
+      for (int j = -reach; j <= box_[1].cells + reach; ++j) {
+        const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
+        for (int i = 0; i < across; i += lanes_) {
+          const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
+          const auto px =
+              hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
+          auto nearest = hn::Max(hn::Max(hn::Sub(loX, px), hn::Sub(px, hiX)), zero);
+          auto farthest = hn::Max(hn::Sub(hiX, px), hn::Sub(px, loX));
+          nearest = hn::Mul(nearest, nearest);
+          farthest = hn::Mul(farthest, farthest);
+          addAxis(1, from, j, nearest, farthest);
+          if (solid) addAxis(2, from, k, nearest, farthest);
+          next = hn::Min(next, hn::Max(first, farthest));
+          first = hn::Min(first, farthest);
+          hn::StoreU(nearest, d, away_ + n);
+          n += static_cast<std::size_t>(lanes_);
+        }
+      }
+    float limit = hn::GetLane(hn::MinOfLanes(d, first));
+    if (second) {
+      // The second least of all lanes: at most one lane's least is the least of all.
+      const auto rest = hn::IfThenElse(hn::Eq(first, hn::Set(d, limit)), next, first);
+      limit = hn::GetLane(hn::MinOfLanes(d, rest));
+    }
+    limit = std::min(limit, enough) * 1.00001f;
+
+    const auto most = hn::Set(d, limit);
+    nearCount_ = 0;
+    n = 0;
+    for (int k = -deep; k <= box_[2].cells + deep; ++k)
+      for (int j = -reach; j <= box_[1].cells + reach; ++j) {
+        const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
+        for (int i = 0; i < across; i += lanes_, n += static_cast<std::size_t>(lanes_)) {
+          const auto keep = hn::Le(hn::LoadU(d, away_ + n), most);
+          if (hn::AllFalse(d, keep)) continue;
+          const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
+          const auto px =
+              hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
+          hn::StoreU(hn::Compress(px, keep), d, near_[0] + nearCount_);
+          keepAxis(1, from, j, keep);
+          if (solid) keepAxis(2, from, k, keep);
+          nearCount_ += static_cast<int>(hn::CountTrue(d, keep));
+        }
+      }
+    return limit;
+  }
+
+  HWY_INLINE V placeOn(int a, std::size_t from, int cell) const {
+    const D d;
+    return hn::Add(hn::LoadU(d, points_[a] + from), hn::Set(d, static_cast<float>(cell)));
+  }
+  HWY_INLINE void addAxis(int a, std::size_t from, int cell, V& nearest, V& farthest) const {
+    const D d;
+    const auto p = placeOn(a, from, cell);
+    const auto below = hn::Sub(hn::Set(d, box_[a].lo), p), above = hn::Sub(p, hn::Set(d, box_[a].hi));
+    const auto near = hn::Max(hn::Max(below, above), hn::Zero(d));
+    const auto far = hn::Max(hn::Sub(hn::Set(d, box_[a].hi), p), hn::Sub(p, hn::Set(d, box_[a].lo)));
+    nearest = hn::MulAdd(near, near, nearest);
+    farthest = hn::MulAdd(far, far, farthest);
+  }
+  HWY_INLINE void keepAxis(int a, std::size_t from, int cell, hn::Mask<D> keep) {
+    hn::StoreU(hn::Compress(placeOn(a, from, cell), keep), D(), near_[a] + nearCount_);
+  }
+
+  // Place of a sample relative to the tile's first cell.
+  float inTile(int a, int sample, int tile) const {
+    const CellPlaces& p = axis(a);
+    return static_cast<float>(p.cell[first(a) + sample] - p.cell[first(a) + tile]) +
+           p.inside[first(a) + sample];
+  }
+
+  template <Feature kFeature>
+  HWY_INLINE void fillTile(int x, int y, int z) {
+    const D d;
+    const DI di;
+    const bool solid = tables_.lattice->axes() == 3;
+    const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
+    for (int s = z; s < z + tables_.tile[2]; ++s)
+      for (int r = y; r < y + tables_.tile[1]; ++r) {
+        const auto py = hn::Set(d, inTile(1, r, y));
+        const auto pz = hn::Set(d, solid ? inTile(2, s, z) : 0.0f);
+        for (int q = 0; q < nearCount_; q += lanes_) {
+          const auto dy = hn::Sub(hn::LoadU(d, near_[1] + q), py);
+          auto away = hn::Mul(dy, dy);
+          if (solid) {
+            const auto dz = hn::Sub(hn::LoadU(d, near_[2] + q), pz);
+            away = hn::MulAdd(dz, dz, away);
+          }
+          hn::StoreU(away, d, away_ + q);
+        }
+        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
+        for (int i = 0; i < kTileX; i += lanes_) {
+          const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
+          const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
+          auto first = hn::Set(d, kFar), second = first;
+          for (int q = 0; q < nearCount_; ++q) {
+            const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
+            const auto square = hn::MulAdd(dx, dx, hn::Set(d, away_[q]));
+            if constexpr (kFeature != Feature::kF1) second = hn::Min(second, hn::Max(first, square));
+            first = hn::Min(first, square);
+          }
+          auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+          if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
+          const auto sum = add_ ? hn::LoadU(d, out + i) : hn::Set(d, bias_);
+          hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out + i);
+        }
+      }
+  }
+
+  static constexpr float kFar = 1e9f;
+
+  const CellTables& tables_;
+  const Block block_;
+  const int lanes_;
+  int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
+  float* points_[3] = {};                             // within their cells
+  Extent box_[3];
+  float* near_[3];  // the points that matter in the tile, relative to its first cell
+  int nearCount_ = 0;
+  float* away_;  // of each, the square of the distance beside x
+  float* out_ = nullptr;
+  int outStride_ = 0;
+  float weight_ = 1.0f, bias_ = 0.0f;
+  bool add_ = false;
+};
+
+}  // namespace welkin::noise::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard of each target

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of a fill, compiled for every instruction set and chosen at run time.
+#include "welkin/noise/fill.h"
+
+// This file once for each target.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "welkin/noise/fill.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_SCALAR
+#include "welkin/noise/cell_tiles-inl.h"
+#include "welkin/noise/distort_rows-inl.h"
+#include "welkin/noise/gradient_rows-inl.h"
+#include "welkin/noise/store-inl.h"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace welkin::noise::HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR
+
+// A processor without vectors gets the point function.
+void fillBlock(const FillJob& job, const Block& b, Scratch&) {
+  fillPointwise(job, b);
+}
+
+void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out) {
+  for (int i = 0; i < n; ++i) {
+    const double t = inside[i], high = fade(t), slope = fadeSlope(t);
+    out.lowWeight[i] = static_cast<float>(derivative ? -slope : 1.0 - high);
+    out.lowReach[i] = static_cast<float>(derivative ? 1.0 - high - slope * t : (1.0 - high) * t);
+    out.highWeight[i] = static_cast<float>(derivative ? slope : high);
+    out.highReach[i] = static_cast<float>(derivative ? high + slope * (t - 1.0) : high * (t - 1.0));
+  }
+}
+
+void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out) {
+  for (int i = 0; i < n; ++i) out[i] = axisHash(key, index[i]);
+}
+
+#else
+
+// Room for a chunk of rows.
+inline float* takeChunk(Scratch& scratch) {
+  return scratch.take<float>(std::size_t{kChunk} * kStrip);
+}
+
+// Calls each(z, y, rows) for the chunks of a block, which begins with one, after `sums` have been filled.
+template <class Each>
+HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, float* const* sums,
+                          const Each& each) {
+  GradientRows rows(job.gradients, scratch, b.x, b.width);
+  for (int z = b.z; z < b.z + b.slices; ++z) {
+    rows.beginSlice(z);
+    for (int y = b.y; y < b.y + b.rows;) {
+      const int count = rows.fillChunk(y, b.y + b.rows - y, sums);
+      each(z, y, count);
+      y += count;
+    }
+  }
+}
+
+// Sums of gradient noise, each a channel.
+void fillSums(const FillJob& job, const Block& b, Scratch& scratch) {
+  float* channel[4];
+  for (int c = 0; c < job.channels; ++c) channel[c] = takeChunk(scratch);
+  forChunks(job, b, scratch, channel, [&](int z, int y, int rows) HWY_ATTR {
+    storeRows(job, channel, kStrip, b.x, y, z, b.width, rows);
+  });
+}
+
+void fillDistorted(const FillJob& job, const Block& b, Scratch& scratch) {
+  const int sums = job.gradients.sums;
+  float** shifts = scratch.take<float*>(static_cast<std::size_t>(sums));
+  const float** shift = scratch.take<const float*>(static_cast<std::size_t>(sums));
+  for (int s = 0; s < sums; ++s) shifts[s] = takeChunk(scratch);
+  float* out = takeChunk(scratch);
+  forChunks(job, b, scratch, shifts, [&](int z, int y, int rows) HWY_ATTR {
+    for (int r = 0; r < rows; ++r) {
+      for (int s = 0; s < sums; ++s) shift[s] = shifts[s] + std::ptrdiff_t{r} * kStrip;
+      distortRow(job, shift, b.x, y + r, z, b.width, out + std::ptrdiff_t{r} * kStrip);
+    }
+    storeRows(job, &out, kStrip, b.x, y, z, b.width, rows);
+  });
+}
+
+// Perlin-Worley's channels of a row, from gradient noise (overwritten by channel 0) and four rows of cells.
+HWY_INLINE void mixRow(int width, const float* const* cells, float* const* channel) {
+  const hn::ScalableTag<float> d;
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const auto a = hn::Set(d, kCoarse[0]), e = hn::Set(d, kCoarse[1]), f = hn::Set(d, kCoarse[2]);
+  for (int i = 0; i < width; i += static_cast<int>(hn::Lanes(d))) {
+    const auto w0 = hn::Clamp(hn::Sub(one, hn::LoadU(d, cells[0] + i)), zero, one);
+    const auto w1 = hn::Clamp(hn::Sub(one, hn::LoadU(d, cells[1] + i)), zero, one);
+    const auto w2 = hn::Clamp(hn::Sub(one, hn::LoadU(d, cells[2] + i)), zero, one);
+    const auto w3 = hn::Clamp(hn::Sub(one, hn::LoadU(d, cells[3] + i)), zero, one);
+    const auto n = hn::Clamp(hn::Load(d, channel[0] + i), zero, one);
+    const auto middle = hn::MulAdd(f, w3, hn::MulAdd(e, w2, hn::Mul(a, w1)));
+    hn::Store(hn::MulAdd(n, hn::Sub(one, middle), middle), d, channel[0] + i);
+    hn::Store(hn::MulAdd(f, w2, hn::MulAdd(e, w1, hn::Mul(a, w0))), d, channel[1] + i);
+    hn::Store(middle, d, channel[2] + i);
+    hn::Store(hn::MulAdd(hn::Set(d, kFine[1]), w3, hn::Mul(hn::Set(d, kFine[0]), w2)), d, channel[3] + i);
+  }
+}
+
+// Blocks of cells lie at multiples of the tiles; what of them is in the box is stored.
+void fillCells(const FillJob& job, const Block& b, Scratch& scratch) {
+  const Block tiles = job.tilesOf(b);
+  const int stride = tiles.width;
+  const std::size_t samples = static_cast<std::size_t>(stride) * tiles.rows * tiles.slices;
+  const bool mixed = job.params->kind == Kind::kPerlinWorley;
+  float* values[4] = {};
+  for (int c = 0; c < (mixed ? 4 : 1); ++c) values[c] = scratch.take<float>(samples + kPad);
+  for (int t = 0; t < job.cellTerms; ++t) {
+    const bool first = mixed || t == 0;
+    CellTiles(job.cells[t], tiles, scratch)
+        .fill(mixed ? Feature::kF1 : job.params->feature, job.cells[t].weight, first ? job.bias : 0.0f,
+              !first, values[mixed ? t : 0], stride);
+  }
+  const auto rowOf = [&](float* v, int y, int z) HWY_ATTR {
+    return v +
+           (static_cast<std::ptrdiff_t>(z + job.lead[2] - tiles.z) * tiles.rows + y + job.lead[1] - tiles.y) *
+               stride +
+           b.x + job.lead[0] - tiles.x;
+  };
+  if (!mixed) {
+    for (int z = b.z; z < b.z + b.slices; ++z) {
+      const float* row = rowOf(values[0], b.y, z);
+      storeRows(job, &row, stride, b.x, b.y, z, b.width, b.rows);
+    }
+    return;
+  }
+  float* channel[4];
+  for (float*& c : channel) c = takeChunk(scratch);
+  forChunks(job, b, scratch, channel, [&](int z, int y, int rows) HWY_ATTR {
+    for (int r = 0; r < rows; ++r) {
+      const float* cells[4];
+      float* to[4];
+      for (int c = 0; c < 4; ++c) {
+        cells[c] = rowOf(values[c], y + r, z);
+        to[c] = channel[c] + std::ptrdiff_t{r} * kStrip;
+      }
+      mixRow(b.width, cells, to);
+    }
+    storeRows(job, channel, kStrip, b.x, y, z, b.width, rows);
+  });
+}
+
+void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out) {
+  const hn::ScalableTag<double> d;
+  const hn::Rebind<float, decltype(d)> df;
+  const auto one = hn::Set(d, 1.0);
+  for (int i = 0; i < n; i += static_cast<int>(hn::Lanes(d))) {
+    const auto t = hn::LoadU(d, inside + i), u = hn::Sub(t, one);
+    // As fade() and fadeSlope(), nothing fused.
+    auto high = hn::Sub(hn::Mul(t, hn::Set(d, 6.0)), hn::Set(d, 15.0));
+    high = hn::Mul(hn::Mul(t, hn::Mul(t, t)), hn::Add(hn::Mul(t, high), hn::Set(d, 10.0)));
+    auto low = hn::Sub(one, high);
+    auto lowReach = hn::Mul(low, t), highReach = hn::Mul(high, u);
+    if (derivative) {
+      const auto slope = hn::Mul(hn::Set(d, 30.0), hn::Mul(hn::Mul(t, t), hn::Mul(u, u)));
+      lowReach = hn::Sub(low, hn::Mul(slope, t));
+      highReach = hn::Add(high, hn::Mul(slope, u));
+      high = slope;
+      low = hn::Neg(slope);
+    }
+    hn::StoreU(hn::DemoteTo(df, low), df, out.lowWeight + i);
+    hn::StoreU(hn::DemoteTo(df, lowReach), df, out.lowReach + i);
+    hn::StoreU(hn::DemoteTo(df, high), df, out.highWeight + i);
+    hn::StoreU(hn::DemoteTo(df, highReach), df, out.highReach + i);
+  }
+}
+
+void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out) {
+  const Words du;
+  for (int i = 0; i < n; i += static_cast<int>(hn::Lanes(du))) {
+    const auto spread = hn::Mul(hn::LoadU(du, index + i), hn::Set(du, kHashStep));
+    hn::StoreU(mixedWords(hn::Add(spread, hn::Set(du, key))), du, out + i);
+  }
+}
+
+void fillBlock(const FillJob& job, const Block& b, Scratch& scratch) {
+  scratch.reset();
+  switch (job.params->kind) {
+    case Kind::kPerlin:
+    case Kind::kCurl:
+      fillSums(job, b, scratch);
+      break;
+    case Kind::kDistorted:
+      fillDistorted(job, b, scratch);
+      break;
+    case Kind::kCellular:
+    case Kind::kPerlinWorley:
+      fillCells(job, b, scratch);
+      break;
+    case Kind::kValue:
+      break;
+  }
+  if (job.stream) hwy::FlushStream();
+}
+
+#endif  // vectors
+
+}  // namespace welkin::noise::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace welkin::noise {
+
+HWY_EXPORT(fillBlock);
+HWY_EXPORT(makeCorners);
+HWY_EXPORT(makeHashes);
+
+void fillBlock(const FillJob& job, const Block& block, Scratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(fillBlock)(job, block, scratch);
+}
+
+void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out) {
+  HWY_DYNAMIC_DISPATCH(makeCorners)(inside, n, derivative, out);
+}
+
+void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out) {
+  HWY_DYNAMIC_DISPATCH(makeHashes)(key, index, n, out);
+}
+
+}  // namespace welkin::noise
+
+#endif

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grid fills: what is worked out once for a fill, and the loop over its blocks. Private to noise/.
+//
+// Gradient noise over a row of samples is a sum, over the four or more rows of lattice points beside it, of
+// products of one factor for each axis, because the noise is
+//   sum over corners of  w(x) w(y) w(z) (g_x d_x + g_y d_y + g_z d_z)
+// with w the fade's weight of a corner on an axis and d the distance to it. For each row of lattice points
+// the factors of x and z are expanded over the samples once, into
+//   A[x] = sum_z,corner w w (g_x d_x + g_z d_z),   B[x] = sum_z,corner w w g_y
+// and every row of samples between two rows of lattice points costs four multiplications a sample:
+//   w0 A0 + (w0 d0) B0 + w1 A1 + (w1 d1) B1.
+// A derivative along an axis puts the derivatives of w and of w d in their places.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "welkin/noise/noise.h"
+#include "welkin/noise/plan.h"
+
+namespace welkin::noise {
+
+// Memory of one thread, or of what threads share, that is kept for the next fill: take() allocates only when
+// more is taken than ever before. What was taken is aligned to 64 bytes and stays until reset().
+class Scratch {
+ public:
+  Scratch() = default;
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch();
+
+  template <class T>
+  T* take(std::size_t count) {
+    return static_cast<T*>(takeBytes(count * sizeof(T)));
+  }
+  void reset();
+
+ private:
+  void* takeBytes(std::size_t bytes);
+  std::vector<std::byte*> blocks_;  // after reset at most one
+  std::size_t capacity_ = 0, used_ = 0, total_ = 0;
+};
+
+// Lends a Scratch out of a pool for the whole process.
+class ScratchLoan {
+ public:
+  ScratchLoan();
+  ~ScratchLoan();
+  ScratchLoan(const ScratchLoan&) = delete;
+  ScratchLoan& operator=(const ScratchLoan&) = delete;
+  Scratch* operator->() const { return scratch_; }
+  Scratch& operator*() const { return *scratch_; }
+
+ private:
+  Scratch* scratch_;
+};
+
+// Weight of a corner on an axis, and weight times distance to it (or the derivatives of both).
+struct Corner {
+  float weight, reach;
+};
+
+// Where samples along one axis lie on an octave's lattice.
+struct Place {
+  Corner low, high;
+  std::uint32_t lowIndex, highIndex;
+};
+
+// The same of a row, by arrays over x; the hashes are odd.
+struct RowPlaces {
+  const std::uint32_t *lowHash, *highHash;
+  const float *lowWeight, *lowReach, *highWeight, *highReach;
+};
+
+// A strip of kStrip samples of kChunk rows is worked on at a time, so that all octaves' lines of lattice
+// points stay in the first-level cache. Arrays over x are padded to a multiple of kPad.
+inline constexpr int kStrip = 128, kChunk = 4, kPad = 64;
+constexpr int padded(int n) {
+  return (n + kPad - 1) / kPad * kPad;
+}
+
+// A line holds A and B of fill.h's formula for a row of lattice points. The lines of an octave are kept in a
+// ring that has room for those of a chunk and two from the chunk before; the last floats keep lines from
+// beginning in the same sets of the cache.
+inline constexpr int kLines = 2 * kChunk + 2, kLineStride = 2 * kStrip + 16;
+struct LineRef {
+  std::uint32_t index;   // of the row of lattice points
+  std::uint32_t offset;  // of the line, in floats
+};
+
+// The lines of one octave that a chunk of rows needs: first those that the chunk before has left.
+struct ChunkLines {
+  const LineRef* line;
+  const std::uint32_t* hash;  // their indices' hashes; vectors are read, so that more follow
+  std::uint32_t left, count;
+};
+
+// A row of samples between two lines.
+struct RowPlace {
+  float weights[4];        // low and high line's weight and reach, all scaled
+  std::uint32_t lines[2];  // offsets
+};
+
+// One octave of gradient noise with its places on every axis of the box.
+struct TermTables {
+  const GradientLattice* lattice;
+  float weight;    // where the fractal bends the octave: its weight afterwards
+  RowPlaces x;     // by sample of the row
+  const Place* z;  // by slice; in a plane null
+  Place time;      // on the axis behind the last of the domain
+};
+
+// Sums of such octaves over the box: the octaves of all sums one after the other, sum s from first[s] on.
+struct GradientTables {
+  int terms = 0, sums = 0;
+  TermTables* term = nullptr;
+  int* first = nullptr;          // sums + 1
+  RowPlace* rows = nullptr;      // [row * terms + term]
+  ChunkLines* chunks = nullptr;  // [chunk * terms + term]
+  int lead = 0;                  // rows of the first chunk before the box's first
+  float bias = 0.0f;             // added to every sum
+  Fractal fractal = Fractal::kFbm;
+};
+
+// Where samples along an axis lie among the cells of one octave.
+struct CellPlaces {
+  const std::int32_t* cell;    // counted from the first sample's
+  const std::uint32_t* index;  // the same, wrapped
+  const float* inside;
+};
+
+// One octave of cells over the box, its edges moved out to whole tiles.
+inline constexpr int kTileX = 8, kTileMost = 8, kCellReach = 2;
+struct CellTables {
+  const CellLattice* lattice;
+  float weight;
+  CellPlaces axis[3];
+  int tile[3];  // samples of a tile: kTileX and powers of two up to kTileMost
+};
+
+// A lattice point and the distance from it.
+struct Spot {
+  std::uint32_t index;
+  float inside;
+};
+
+// One octave of distorted noise over the box; its shifts are sums of gradients.
+struct DistortTables {
+  const GradientLattice* lattice;
+  float weight;
+  const std::uint32_t* xIndex;
+  const float* xInside;
+  const Spot *y, *z;
+  Spot time;
+};
+
+enum class Format { kUint8, kUint16, kHalf, kFloat };
+
+// Samples of the box that are worked on together, by one thread.
+struct Block {
+  int x, y, z, width, rows, slices;  // from the box's first
+};
+
+struct FillJob {
+  const Noise* noise;
+  const Plan* plan;
+  const NoiseParams* params;
+  Grid grid;
+  Box box;
+  Format format;
+  void* out;
+  int channels;
+
+  // What follows is worked out by fillGrid().
+  GradientTables gradients;
+  CellTables* cells;
+  int cellTerms;
+  DistortTables* distorts;
+  int distortTerms;
+  int lead[3], tiled[3];  // samples from a tile's first to the box's, and of whole tiles over the box
+  float bias;             // of sums that are not gradients'
+  float low, high;        // clamp of normalised values
+  float quantiseScale, quantiseBias;  // for integer formats, to [0, greatest]
+  bool stream;                        // `out` is larger than caches: write past them
+
+  // The whole tiles of a block, from the first tile's first sample.
+  Block tilesOf(const Block& b) const;
+};
+
+// Fills job.out. Everything in the job has been checked.
+void fillGrid(FillJob& job);
+
+// One block of it by the point function, for processors without vectors and cells smaller than samples.
+void fillPointwise(const FillJob& job, const Block& block);
+
+// On the processor's best instruction set: weights and reaches of corners from places within cells, n of
+// them, and the hashes of lattice points.
+struct CornerArrays {
+  float *lowWeight, *lowReach, *highWeight, *highReach;
+};
+void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out);
+void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out);
+
+// One block of it, on the processor's best instruction set.
+void fillBlock(const FillJob& job, const Block& block, Scratch& scratch);
+
+}  // namespace welkin::noise

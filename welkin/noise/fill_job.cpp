@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a fill works out once, its memory, and the loop over its blocks.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "welkin/core/parallel.h"
+#include "welkin/noise/fill.h"
+
+namespace welkin::noise {
+namespace {
+
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kStreamBytes = std::size_t{4} << 20;  // more than a core's own caches hold
+
+std::byte* allocate(std::size_t bytes) {
+  return static_cast<std::byte*>(::operator new(bytes, std::align_val_t{kAlignment}));
+}
+void release(std::byte* p) {
+  ::operator delete(p, std::align_val_t{kAlignment});
+}
+
+struct Pool {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Scratch>> idle;
+};
+Pool& pool() {
+  static Pool p;
+  return p;
+}
+
+}  // namespace
+
+Scratch::~Scratch() {
+  for (std::byte* b : blocks_) release(b);
+}
+
+void Scratch::reset() {
+  if (blocks_.size() > 1) {  // one block that holds all that was taken
+    for (std::byte* b : blocks_) release(b);
+    blocks_.assign(1, allocate(total_));
+    capacity_ = total_;
+  }
+  used_ = total_ = 0;
+}
+
+void* Scratch::takeBytes(std::size_t bytes) {
+  bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
+  total_ += bytes;
+  if (blocks_.empty() || used_ + bytes > capacity_) {
+    capacity_ = std::max(bytes, std::size_t{1} << 16);
+    blocks_.push_back(allocate(capacity_));
+    used_ = 0;
+  }
+  void* p = blocks_.back() + used_;
+  used_ += bytes;
+  return p;
+}
+
+ScratchLoan::ScratchLoan() {
+  Pool& p = pool();
+  const std::lock_guard lock(p.mutex);
+  if (p.idle.empty()) {
+    scratch_ = new Scratch;
+    // Room for all to come back, so that giving back does not allocate.
+    p.idle.reserve(p.idle.capacity() + 1);
+  } else {
+    scratch_ = p.idle.back().release();
+    p.idle.pop_back();
+  }
+}
+
+ScratchLoan::~ScratchLoan() {
+  Pool& p = pool();
+  const std::lock_guard lock(p.mutex);
+  p.idle.emplace_back(scratch_);
+}
+
+namespace {
+
+// Makes the tables of a fill in `memory`.
+class Tables {
+ public:
+  Tables(FillJob& job, Scratch& memory)
+      : job_(job), memory_(memory), dimensions_(static_cast<int>(job.params->dimensions)) {}
+
+  // Sums of gradient noise. `scale` multiplies every weight.
+  template <class TermOf>
+  void addSums(int sums, const int* counts, const TermOf& termOf, double scale, double bias,
+               Fractal fractal) {
+    GradientTables& g = job_.gradients;
+    g.sums = sums;
+    g.bias = static_cast<float>(bias);
+    g.fractal = fractal;
+    g.lead = job_.cellTerms > 0 ? job_.lead[1] % kChunk : 0;  // blocks of cells begin at tiles
+    g.first = memory_.take<int>(static_cast<std::size_t>(sums) + 1);
+    g.first[0] = 0;
+    for (int s = 0; s < sums; ++s) g.first[s + 1] = g.first[s] + counts[s];
+    g.terms = g.first[sums];
+    g.term = memory_.take<TermTables>(static_cast<std::size_t>(g.terms));
+    const int rows = job_.box.size.y, chunks = chunkCount(g);
+    g.rows = memory_.take<RowPlace>(static_cast<std::size_t>(g.terms) * rows);
+    g.chunks = memory_.take<ChunkLines>(static_cast<std::size_t>(g.terms) * chunks);
+    for (int s = 0; s < sums; ++s)
+      for (int i = 0; i < counts[s]; ++i) {
+        const GradientTerm& term = termOf(s, i);
+        addTerm(g, g.first[s] + i, term, scale);
+      }
+  }
+
+  void addCells(const CellTerm& term, CellTables& out, double scale) {
+    out.lattice = &term.lattice;
+    out.weight = static_cast<float>(term.weight * scale);
+    for (int a = 0; a < 3; ++a) {
+      out.tile[a] = a == 0 ? kTileX : 1;
+      if (a >= term.lattice.axes()) continue;
+      const Axis& axis = term.lattice.axis(a);
+      const double step = axis.frequency() * job_.grid.spacing[a];
+      if (a > 0)
+        while (out.tile[a] < kTileMost && 2 * out.tile[a] * step <= kTileCells) out.tile[a] *= 2;
+      const int first = job_.box.first[a] - job_.lead[a], n = job_.tiled[a];
+      auto* cell = memory_.take<std::int32_t>(static_cast<std::size_t>(n));
+      auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(n));
+      auto* inside = memory_.take<float>(static_cast<std::size_t>(n));
+      double before = 0.0;
+      for (int i = 0; i < n; ++i) {
+        const Span span = axis.at(position(a, first + i));
+        cell[i] = i == 0 ? 0 : cell[i - 1] + static_cast<int>(std::lround(step - (span.inside - before)));
+        index[i] = span.low;
+        inside[i] = static_cast<float>(span.inside);
+        before = span.inside;
+      }
+      out.axis[a] = {cell, index, inside};
+    }
+  }
+
+  void addDistort(const DistortedTerm& term, DistortTables& out, double scale) {
+    out.lattice = &term.main;
+    out.weight = static_cast<float>(term.weight * scale);
+    const int width = padded(job_.box.size.x);
+    auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(width));
+    auto* inside = memory_.take<float>(static_cast<std::size_t>(width));
+    for (int i = 0; i < width; ++i) {
+      const Spot s = spotOf(term.main.axis(0), position(0, job_.box.first.x + i));
+      index[i] = s.index;
+      inside[i] = s.inside;
+    }
+    out.xIndex = index;
+    out.xInside = inside;
+    out.y = spots(term.main.axis(1), 1);
+    out.z = dimensions_ == 3 ? spots(term.main.axis(2), 2) : nullptr;
+    if (term.main.axes() > dimensions_)
+      out.time = spotOf(term.main.axis(dimensions_), job_.params->time.value_or(0.0));
+  }
+
+ private:
+  static constexpr double kTileCells = 0.3;  // of a cell's edge that a tile spans in y and z
+
+  double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
+
+  int chunkCount(const GradientTables& g) const { return (g.lead + job_.box.size.y + kChunk - 1) / kChunk; }
+
+  static Spot spotOf(const Axis& axis, double p) {
+    const Span span = axis.at(p);
+    return {span.low, static_cast<float>(span.inside)};
+  }
+  const Spot* spots(const Axis& axis, int a) {
+    auto* out = memory_.take<Spot>(static_cast<std::size_t>(job_.box.size[a]));
+    for (int i = 0; i < job_.box.size[a]; ++i) out[i] = spotOf(axis, position(a, job_.box.first[a] + i));
+    return out;
+  }
+
+  void addTerm(GradientTables& g, int t, const GradientTerm& term, double scale) {
+    const GradientLattice& lattice = term.lattice;
+    TermTables& out = g.term[t];
+    out.lattice = &lattice;
+    const bool folded = g.fractal == Fractal::kFbm;
+    out.weight = static_cast<float>(term.weight * scale);
+    const double unit = 1.0 / gradientBytesScale(lattice.axes());
+    const auto yScale = static_cast<float>(folded ? term.weight * scale * unit : unit);
+
+    const Line x = lineOf(lattice.axis(0), 0, term.derivative == 0);
+    std::uint32_t* hash[2] = {x.low, x.high};
+    if (!lattice.published())
+      for (std::uint32_t*& h : hash) {
+        auto* hashed = memory_.take<std::uint32_t>(static_cast<std::size_t>(x.count));
+        makeHashes(lattice.axis(0).key(), h, x.count, hashed);
+        for (int i = 0; i < x.count; ++i) hashed[i] |= 1u;
+        h = hashed;
+      }
+    out.x = {hash[0],           hash[1], x.corner.lowWeight, x.corner.lowReach, x.corner.highWeight,
+             x.corner.highReach};
+
+    addRows(g, t, lineOf(lattice.axis(1), 1, term.derivative == 1), yScale);
+    out.z = nullptr;
+    if (dimensions_ == 3) {
+      const Line z = lineOf(lattice.axis(2), 2, term.derivative == 2);
+      auto* places = memory_.take<Place>(static_cast<std::size_t>(z.count));
+      for (int k = 0; k < z.count; ++k) places[k] = z.place(k);
+      out.z = places;
+    }
+    if (lattice.axes() > dimensions_) {
+      Line time = takeLine(1);
+      set(time, 0, lattice.axis(dimensions_).at(job_.params->time.value_or(0.0)));
+      makeCorners(time.inside, 1, false, time.corner);
+      out.time = time.place(0);
+    }
+  }
+
+  // Samples along an axis, padded.
+  struct Line {
+    int count;
+    double* inside;
+    std::uint32_t *low, *high;  // indices
+    CornerArrays corner;
+
+    Place place(int i) const {
+      return {{corner.lowWeight[i], corner.lowReach[i]},
+              {corner.highWeight[i], corner.highReach[i]},
+              low[i],
+              high[i]};
+    }
+  };
+  Line takeLine(int samples) {
+    const int count = padded(samples);
+    const auto n = static_cast<std::size_t>(count);
+    const auto floats = [&] { return memory_.take<float>(n); };
+    Line line{
+        count, memory_.take<double>(n), memory_.take<std::uint32_t>(n), memory_.take<std::uint32_t>(n), {}};
+    line.corner = {floats(), floats(), floats(), floats()};
+    return line;
+  }
+  static void set(Line& line, int i, const Span& span) {
+    line.inside[i] = span.inside;
+    line.low[i] = span.low;
+    line.high[i] = span.high;
+  }
+
+  Line lineOf(const Axis& axis, int a, bool derivative) {
+    Line line = takeLine(job_.box.size[a]);
+    // Exact at multiples of kExactly samples of the whole grid, stepped from there: the same in every box,
+    // and off by no more than some roundings of a double.
+    constexpr int kExactly = 64;
+    const double step = axis.frequency() * job_.grid.spacing[a];
+    const std::uint32_t period = axis.period();
+    const bool steps = step * kExactly < 1e9 && (period == 0 || step < period);
+    const int first = job_.box.first[a];
+    for (int i = 0; i < line.count;) {
+      const int begin = (first + i) / kExactly * kExactly,
+                end = std::min(begin + kExactly - first, line.count);
+      const Span span = axis.at(position(a, begin));
+      if (!steps) {
+        set(line, i, axis.at(position(a, first + i)));
+        ++i;
+        continue;
+      }
+      for (; i < end; ++i) {
+        const double t = span.inside + (first + i - begin) * step;
+        const auto cells = static_cast<std::uint32_t>(t);
+        line.inside[i] = t - cells;
+        std::uint32_t low = span.low + cells;
+        if (period != 0 && (low >= period || low < cells)) low = (span.low + std::uint64_t{cells}) % period;
+        line.low[i] = low;
+        line.high[i] = low + 1 == period ? 0 : low + 1;
+      }
+    }
+    makeCorners(line.inside, line.count, derivative, line.corner);
+    return line;
+  }
+
+  // Which lines of lattice points the rows lie between, chunk by chunk.
+  void addRows(GradientTables& g, int t, const Line& y, float scale) {
+    const int rows = job_.box.size.y, chunks = chunkCount(g);
+    LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * kLines);
+    auto* hash = memory_.take<std::uint32_t>(static_cast<std::size_t>(chunks) * kLines + kPad);
+    std::uint32_t slot = 0;
+    const Axis& axis = g.term[t].lattice->axis(1);
+    const LineRef* last[2] = {};  // of the row before
+    for (int c = 0; c < chunks; ++c) {
+      ChunkLines& chunk = g.chunks[static_cast<std::size_t>(c) * g.terms + t];
+      chunk = {next, hash, 0, 0};
+      for (const LineRef*& l : last)
+        if (l != nullptr && (l == last[0] || l->index != last[0]->index)) {
+          next[chunk.count] = *l;
+          l = next + chunk.count++;
+        }
+      chunk.left = chunk.count;
+      for (int row = std::max(c * kChunk - g.lead, 0); row < std::min((c + 1) * kChunk - g.lead, rows);
+           ++row) {
+        const auto find = [&](std::uint32_t index) {
+          for (const LineRef* l : {last[1], last[0]})
+            if (l != nullptr && l->index == index) return l;
+          LineRef& made = next[chunk.count++];
+          made = {index, (static_cast<std::uint32_t>(t) * kLines + slot++ % kLines) * kLineStride};
+          return static_cast<const LineRef*>(&made);
+        };
+        const LineRef* low = find(y.low[row]);
+        const LineRef* high = y.high[row] == y.low[row] ? low : find(y.high[row]);
+        last[0] = low;
+        last[1] = high;
+        const CornerArrays& w = y.corner;
+        g.rows[static_cast<std::size_t>(row) * g.terms + t] = {
+            {scale * w.lowWeight[row], scale * w.lowReach[row], scale * w.highWeight[row],
+             scale * w.highReach[row]},
+            {low->offset, high->offset}};
+      }
+      for (std::uint32_t i = 0; i < chunk.count; ++i) hash[i] = axis.hash(next[i].index);
+      next += chunk.count;
+      hash += chunk.count;
+    }
+  }
+
+  FillJob& job_;
+  Scratch& memory_;
+  int dimensions_;
+};
+
+void makeTables(FillJob& job, Scratch& memory) {
+  const Plan& plan = *job.plan;
+  const NoiseParams& p = *job.params;
+  const double scale = plan.normalise.scale, bias = plan.normalise.bias;
+  job.cellTerms = static_cast<int>(plan.cells.size());
+  Tables tables(job, memory);
+  int counts[3 * 24] = {};
+  const auto inSum = [&](int s, int i) -> const GradientTerm& { return plan.gradients[s][i]; };
+  for (std::size_t s = 0; s < plan.gradients.size(); ++s)
+    counts[s] = static_cast<int>(plan.gradients[s].size());
+  switch (p.kind) {
+    case Kind::kPerlin:
+    case Kind::kCurl:
+      tables.addSums(static_cast<int>(plan.gradients.size()), counts, inSum, scale, bias, p.fractal);
+      break;
+    case Kind::kPerlinWorley:
+      tables.addSums(1, counts, inSum, 0.5, 0.5, Fractal::kFbm);
+      break;
+    case Kind::kDistorted: {
+      const int fields = static_cast<int>(p.dimensions), octaves = static_cast<int>(plan.distorted.size());
+      std::fill_n(counts, fields * octaves, 1);
+      tables.addSums(
+          fields * octaves, counts,
+          [&](int s, int) -> const GradientTerm& { return plan.distorted[s / fields].fields[s % fields]; },
+          p.distortion, 0.0, Fractal::kFbm);
+      job.distortTerms = octaves;
+      job.distorts = memory.take<DistortTables>(static_cast<std::size_t>(octaves));
+      for (int o = 0; o < octaves; ++o) tables.addDistort(plan.distorted[o], job.distorts[o], scale);
+      break;
+    }
+    case Kind::kCellular:
+    case Kind::kValue:
+      break;
+  }
+  job.bias = static_cast<float>(p.kind == Kind::kPerlinWorley ? 0.0 : bias);
+  job.cells = memory.take<CellTables>(plan.cells.size());
+  for (int t = 0; t < job.cellTerms; ++t) tables.addCells(plan.cells[t], job.cells[t], scale);
+}
+
+}  // namespace
+
+Block FillJob::tilesOf(const Block& b) const {
+  Block t = b;
+  const auto widen = [](int& first, int& count, int before, int tile) {
+    const int begin = (first + before) / tile * tile;
+    const int end = (first + before + count + tile - 1) / tile * tile;
+    first = begin;
+    count = end - begin;
+  };
+  widen(t.x, t.width, lead[0], kTileX);
+  widen(t.y, t.rows, lead[1], kTileMost);
+  if (params->dimensions == 3) widen(t.z, t.slices, lead[2], kTileMost);
+  return t;
+}
+
+void fillGrid(FillJob& job) {
+  const NoiseParams& p = *job.params;
+  const glm::ivec3 size = job.box.size;
+  const bool cells = p.kind == Kind::kCellular || p.kind == Kind::kPerlinWorley;
+  for (int a = 0; a < 3; ++a) {
+    const int tile = a < p.dimensions ? kTileMost : 1;
+    job.lead[a] = job.box.first[a] % tile;
+    job.tiled[a] = (job.lead[a] + size[a] + tile - 1) / tile * tile;
+  }
+  const Affine &n = job.plan->normalise, &q = job.plan->quantise;
+  const double most = job.format == Format::kUint8 ? 255.0 : 65535.0;
+  job.low = static_cast<float>(n.low);
+  job.high = static_cast<float>(n.high);
+  job.quantiseScale = static_cast<float>(q.scale * most);
+  job.quantiseBias = static_cast<float>(q.bias * most);
+  const std::size_t bytes = job.format == Format::kFloat ? 4 : 0;
+  job.stream = bytes * size.x * size.y * size.z > kStreamBytes;
+  const ScratchLoan memory;
+  memory->reset();
+  makeTables(job, *memory);
+
+  // Blocks: of gradients as tall as leaves every thread several, so that rows share what lies between rows of
+  // lattice points; of cells small enough for a core's own cache.
+  const int strip = cells ? 128 : kStrip;
+  int rows = size.y, slices = 1;
+  if (cells) {
+    rows = p.dimensions == 3 ? 16 : 64;
+    slices = 8;
+  } else if (size.z < 4 * threadCount()) {
+    rows = std::max(64, size.y / (4 * threadCount()) / kChunk * kChunk);
+  }
+  const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
+  const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0, leadZ = cells ? job.lead[2] : 0;
+  const int across = parts(size.x, strip, leadX), down = parts(size.y, rows, leadY),
+            deep = parts(size.z, slices, leadZ);
+  const auto body = [&](std::size_t begin, std::size_t end) {
+    const ScratchLoan scratch;
+    for (std::size_t i = begin; i < end; ++i) {
+      const int x = static_cast<int>(i % across), y = static_cast<int>(i / across % down),
+                z = static_cast<int>(i / across / down);
+      // Whole blocks are counted from the lead before the box.
+      const auto clip = [](int part, int length, int lead, int whole, int& first, int& count) {
+        first = std::max(part * length - lead, 0);
+        count = std::min((part + 1) * length - lead, whole) - first;
+      };
+      Block b{};
+      clip(x, strip, leadX, size.x, b.x, b.width);
+      clip(y, rows, leadY, size.y, b.y, b.rows);
+      clip(z, slices, leadZ, size.z, b.z, b.slices);
+      fillBlock(job, b, *scratch);
+    }
+  };
+  parallelFor(static_cast<std::size_t>(across) * down * deep, 1, std::ref(body));
+}
+
+}  // namespace welkin::noise

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/noise/params.h"
+
+#include <cmath>
+#include <string>
+
+#include "welkin/core/error.h"
+
+namespace welkin::noise {
+namespace {
+
+// Throws for the first number outside its described range.
+class RangeCheck : public ParamVisitor {
+ public:
+  void value(const ParamInfo&, bool&) override {}
+  void value(const ParamInfo& info, std::int64_t& x) override { check(info, static_cast<double>(x)); }
+  void value(const ParamInfo& info, double& x) override { check(info, x); }
+  void value(const ParamInfo& info, glm::dvec3& x) override {
+    for (int i = 0; i < 3; ++i) check(info, x[i]);
+  }
+  void value(const ParamInfo&, std::string&) override {}
+  void value(const ParamInfo&, UtcTime&) override {}
+  void value(const ParamInfo& info, std::optional<double>& x) override {
+    if (x) check(info, *x);
+  }
+  void value(const ParamInfo&, std::optional<std::string>&) override {}
+  void choice(const ParamInfo&, std::span<const std::string_view>, int&) override {}
+
+ protected:
+  bool beginGroup(const ParamInfo&) override { return true; }
+  void endGroup() override {}
+  std::size_t beginList(const ParamInfo&, std::size_t size) override { return size; }
+  void beginElement(std::size_t) override {}
+  void endElement() override {}
+  void endList() override {}
+
+ private:
+  static std::string text(double x) {
+    std::string s = std::to_string(x);
+    s.erase(s.find_last_not_of('0') + 1);
+    if (s.back() == '.') s.pop_back();
+    return s;
+  }
+  static void check(const ParamInfo& info, double x) {
+    if (std::isfinite(x) && x >= info.min && x <= info.max) return;
+    throw ParameterError("the noise's " + std::string(info.key) + " is " + text(x) + ", not within " +
+                         text(info.min) + " to " + text(info.max));
+  }
+};
+
+void require(bool fine, const char* sentence) {
+  if (!fine) throw ParameterError(sentence);
+}
+
+bool isWhole(double x) {
+  return std::floor(x) == x;
+}
+
+}  // namespace
+
+void describe(NoiseParams& p, ParamVisitor& v) {
+  constexpr double kFar = 1e15;
+  v.choice({"kind", "", "what the noise is made of"}, p.kind);
+  v.value({"dimensions", "", "2: a plane, z is ignored; 3: space", 2, 3}, p.dimensions);
+  v.value({"tile", "", "repeat without a seam after one unit of the domain; needs whole frequencies"},
+          p.tile);
+  v.value({"frequency", "cells", "cells across one unit of the domain in the first octave", 1e-9, 1e6},
+          p.frequency);
+  v.value({"octaves", "", "octaves summed", 1, 24}, p.octaves);
+  v.value({"lacunarity", "", "frequency of an octave over that of the one before", 1, 16}, p.lacunarity);
+  v.value({"amplitude", "", "weight of the first octave", 0, 1e6}, p.amplitude);
+  v.value({"persistence", "", "weight of an octave over that of the one before", 0, 16}, p.persistence);
+  v.choice({"fractal", "", "how octaves are summed"}, p.fractal);
+  v.choice({"feature", "", "distance that cellular noise shows"}, p.feature);
+  v.value({"distortion", "cells", "shift for a distorting noise of 1, in distorted noise", 0, 16},
+          p.distortion);
+  v.choice({"normalisation", "", "what becomes of the sum"}, p.normalisation);
+  v.value({"seed", "", "another seed, another noise"}, p.seed);
+  v.choice({"table", "", "where the lattice's hash comes from"}, p.table);
+  v.value({"offset", "", "added to positions, in units of the domain", -kFar, kFar}, p.offset);
+  v.value(
+      {"time", "cells", "place on one more axis, for noise that evolves; absent: no such axis", -kFar, kFar},
+      p.time);
+  v.value({"time_period", "cells", "time after which the evolution repeats, whole; 0: never", 0, 1e6},
+          p.timePeriod);
+  v.value({"time_lacunarity", "", "pace of an octave over that of the one before", 0, 16}, p.timeLacunarity);
+}
+
+void validate(const NoiseParams& p) {
+  NoiseParams copy = p;
+  RangeCheck check;
+  describe(copy, check);
+  if (p.tile) {
+    for (int axis = 0; axis < p.dimensions; ++axis)
+      require(isWhole(p.frequency[axis]) && p.frequency[axis] >= 1.0,
+              "noise that tiles needs whole frequencies of at least 1 on every axis");
+    require(isWhole(p.lacunarity) || p.octaves == 1, "noise that tiles needs a whole lacunarity");
+  }
+  const double last = std::pow(p.lacunarity, static_cast<double>(p.octaves - 1));
+  for (int axis = 0; axis < p.dimensions; ++axis)
+    require(p.frequency[axis] * last <= 1e9, "the noise's last octave has more than 1e9 cells a unit");
+  if (p.timePeriod > 0.0) {
+    require(isWhole(p.timePeriod), "the noise's time_period is not a whole number of cells");
+    require(isWhole(p.timeLacunarity) && p.timeLacunarity >= 1.0,
+            "evolution that repeats needs a whole time_lacunarity of at least 1");
+    require(p.timePeriod * std::pow(p.timeLacunarity, static_cast<double>(p.octaves - 1)) <= 1e9,
+            "the noise's last octave repeats after more than 1e9 cells of time");
+  }
+  const bool signs = p.kind == Kind::kPerlin || p.kind == Kind::kValue || p.kind == Kind::kDistorted;
+  require(signs || p.fractal == Fractal::kFbm,
+          "billow and ridged sums need noise of both signs: perlin, value or distorted");
+  require(p.table == Table::kSeeded || p.kind == Kind::kPerlin,
+          "the published table belongs to Perlin noise alone");
+  require(p.table == Table::kSeeded || p.dimensions == 2 || !p.time,
+          "the published table has three axes: in space none is left for time");
+  require(p.kind != Kind::kPerlinWorley || p.normalisation != Normalisation::kUnitVariance,
+          "Perlin-Worley noise fills [0, 1] by itself and has no unit variance");
+  require(p.kind != Kind::kValue || !p.time, "value noise has no time axis");
+}
+
+}  // namespace welkin::noise

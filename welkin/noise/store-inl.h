@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of floats to the caller's format. Compiled for every instruction set.
+#if defined(WELKIN_NOISE_STORE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef WELKIN_NOISE_STORE_INL_H_
+#undef WELKIN_NOISE_STORE_INL_H_
+#else
+#define WELKIN_NOISE_STORE_INL_H_
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "welkin/noise/fill.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace welkin::noise::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// To binary16, rounded to nearest even. Written out since not every instruction set rounds so by itself.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Vec<hn::Rebind<std::uint16_t, D>> halfBits(D d, V v) {
+  const hn::RebindToUnsigned<D> du;
+  const auto bits = hn::BitCast(du, v);
+  const auto sign = hn::And(bits, hn::Set(du, 0x80000000u));
+  const auto magnitude = hn::Xor(bits, sign);
+  // Normal halves: the exponent's bias changed from 127 to 15, half of the last bit added, but for ties to
+  // even.
+  const auto odd = hn::And(hn::ShiftRight<13>(magnitude), hn::Set(du, 1u));
+  const auto normal =
+      hn::ShiftRight<13>(hn::Add(hn::Add(magnitude, odd), hn::Set(du, 0xfffu - (112u << 23))));
+  // Subnormal ones: a float whose last bit is 2^-24 does the rounding.
+  const auto magic = hn::Set(du, 126u << 23);
+  const auto tiny =
+      hn::Sub(hn::BitCast(du, hn::Add(hn::BitCast(d, magnitude), hn::BitCast(d, magic))), magic);
+  // From 65520 on: infinity; beyond that not a number.
+  const auto huge =
+      hn::IfThenElse(hn::Gt(magnitude, hn::Set(du, 0x7f800000u)), hn::Set(du, 0x7e00u), hn::Set(du, 0x7c00u));
+  auto half = hn::IfThenElse(hn::Lt(magnitude, hn::Set(du, 113u << 23)), tiny, normal);
+  half = hn::IfThenElse(hn::Lt(magnitude, hn::Set(du, 0x477ff000u)), half, huge);
+  half = hn::Or(half, hn::ShiftRight<16>(sign));
+  return hn::DemoteTo(hn::Rebind<std::uint16_t, D>(), hn::BitCast(hn::RebindToSigned<D>(), half));
+}
+
+template <Format kFormat>
+struct FormatTraits;
+template <>
+struct FormatTraits<Format::kUint8> {
+  using Type = std::uint8_t;
+};
+template <>
+struct FormatTraits<Format::kUint16> {
+  using Type = std::uint16_t;
+};
+template <>
+struct FormatTraits<Format::kHalf> {
+  using Type = std::uint16_t;
+};
+template <>
+struct FormatTraits<Format::kFloat> {
+  using Type = float;
+};
+
+template <Format kFormat, class D, class V = hn::Vec<D>>
+HWY_INLINE auto converted(const FillJob& job, D d, V v) {
+  if constexpr (kFormat == Format::kUint8 || kFormat == Format::kUint16) {
+    using T = typename FormatTraits<kFormat>::Type;
+    // The clamp of normalised values is within that of integers.
+    v = hn::MulAdd(v, hn::Set(d, job.quantiseScale), hn::Set(d, job.quantiseBias));
+    v = hn::Clamp(v, hn::Zero(d), hn::Set(d, static_cast<float>(hwy::HighestValue<T>())));
+    return hn::DemoteTo(hn::Rebind<T, D>(), hn::NearestInt(v));
+  } else {
+    v = hn::Clamp(v, hn::Set(d, job.low), hn::Set(d, job.high));
+    if constexpr (kFormat == Format::kHalf)
+      return halfBits(d, v);
+    else
+      return v;
+  }
+}
+
+// `count` samples of each channel, interleaved, to value `at` of the output.
+template <Format kFormat, int kChannels>
+HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int count, std::size_t at) {
+  using T = typename FormatTraits<kFormat>::Type;
+  const hn::ScalableTag<float> d;
+  const hn::Rebind<T, decltype(d)> dt;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  T* out = static_cast<T*>(job.out) + at;
+  // Past the caches only where whole vectors are stored to their own multiples.
+  const bool stream = kFormat == Format::kFloat && kChannels == 1 && job.stream &&
+                      reinterpret_cast<std::uintptr_t>(out) % (sizeof(T) * lanes) == 0;
+  const auto storeAt = [&](int i, T* to, auto streamed) HWY_ATTR {
+    const auto v0 = converted<kFormat>(job, d, hn::LoadU(d, rows[0] + i));
+    if constexpr (kChannels == 1 && decltype(streamed)::value) {
+      hn::Stream(v0, dt, to);
+    } else if constexpr (kChannels == 1) {
+      hn::StoreU(v0, dt, to);
+    } else {
+      const auto v1 = converted<kFormat>(job, d, hn::LoadU(d, rows[1] + i));
+      if constexpr (kChannels == 2) {
+        hn::StoreInterleaved2(v0, v1, dt, to);
+      } else {
+        const auto v2 = converted<kFormat>(job, d, hn::LoadU(d, rows[2] + i));
+        if constexpr (kChannels == 3)
+          hn::StoreInterleaved3(v0, v1, v2, dt, to);
+        else
+          hn::StoreInterleaved4(v0, v1, v2, converted<kFormat>(job, d, hn::LoadU(d, rows[3] + i)), dt, to);
+      }
+    }
+  };
+  int i = 0;
+  if (stream) {
+    if constexpr (kFormat == Format::kFloat)
+      for (; i + lanes <= count; i += lanes) storeAt(i, out + i, std::true_type());
+  } else {
+    for (; i + lanes <= count; i += lanes)
+      storeAt(i, out + static_cast<std::ptrdiff_t>(i) * kChannels, std::false_type());
+  }
+  if (i < count) {
+    HWY_ALIGN T rest[4 * hn::MaxLanes(hn::ScalableTag<float>())];
+    storeAt(i, rest, std::false_type());
+    std::memcpy(out + static_cast<std::ptrdiff_t>(i) * kChannels, rest,
+                sizeof(T) * static_cast<std::size_t>(count - i) * kChannels);
+  }
+}
+
+// Rows of a block, from sample x of row y and slice z of the box on; each `stride` floats behind the one
+// before.
+template <Format kFormat, int kChannels>
+HWY_NOINLINE void storeRowsAs(const FillJob& job, const float* const* channels, int stride, int x, int y,
+                              int z, int width, int rows) {
+  const glm::ivec3& size = job.box.size;
+  for (int r = 0; r < rows; ++r) {
+    const float* row[kChannels];
+    for (int c = 0; c < kChannels; ++c) row[c] = channels[c] + static_cast<std::ptrdiff_t>(r) * stride;
+    storeRowAs<kFormat, kChannels>(
+        job, row, width,
+        ((static_cast<std::size_t>(z) * size.y + y + r) * size.x + x) * std::size_t{kChannels});
+  }
+}
+
+template <Format kFormat>
+HWY_INLINE void storeRowsIn(const FillJob& job, const float* const* channels, int stride, int x, int y, int z,
+                            int width, int rows) {
+  switch (job.channels) {
+    case 1:
+      return storeRowsAs<kFormat, 1>(job, channels, stride, x, y, z, width, rows);
+    case 2:
+      return storeRowsAs<kFormat, 2>(job, channels, stride, x, y, z, width, rows);
+    case 3:
+      return storeRowsAs<kFormat, 3>(job, channels, stride, x, y, z, width, rows);
+    default:
+      return storeRowsAs<kFormat, 4>(job, channels, stride, x, y, z, width, rows);
+  }
+}
+
+inline void storeRows(const FillJob& job, const float* const* channels, int stride, int x, int y, int z,
+                      int width, int rows) {
+  switch (job.format) {
+    case Format::kUint8:
+      return storeRowsIn<Format::kUint8>(job, channels, stride, x, y, z, width, rows);
+    case Format::kUint16:
+      return storeRowsIn<Format::kUint16>(job, channels, stride, x, y, z, width, rows);
+    case Format::kHalf:
+      return storeRowsIn<Format::kHalf>(job, channels, stride, x, y, z, width, rows);
+    case Format::kFloat:
+      return storeRowsIn<Format::kFloat>(job, channels, stride, x, y, z, width, rows);
+  }
+}
+
+}  // namespace welkin::noise::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard of each target
