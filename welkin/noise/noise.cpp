@@ -12,22 +12,10 @@
 #include "welkin/core/error.h"
 #include "welkin/noise/fill.h"
 #include "welkin/noise/plan.h"
+#include "welkin/noise/value_sum.h"
 
 namespace welkin::noise {
 namespace {
-
-double shaped(Fractal fractal, double n) {
-  switch (fractal) {
-    case Fractal::kFbm:
-      return n;
-    case Fractal::kBillow:
-      return 2.0 * std::abs(n) - 1.0;
-    case Fractal::kRidged:
-      break;
-  }
-  const double rest = 1.0 - std::abs(n);
-  return 2.0 * rest * rest - 1.0;
-}
 
 double sumOf(const std::vector<GradientTerm>& terms, Fractal fractal, const std::array<double, 4>& place) {
   double sum = 0.0;
@@ -103,6 +91,7 @@ double Noise::sample(const glm::dvec3& p, int channel) const {
       raw = sumOf(plan.cells, params_.feature, inSpace);
       break;
     case Kind::kValue:
+      raw = valueSum(plan.values, params_, p);
       break;
     case Kind::kPerlinWorley: {
       std::array<double, 4> cells;
@@ -117,8 +106,13 @@ double Noise::sample(const glm::dvec3& p, int channel) const {
 }
 
 Noise::Slope Noise::sampleSlope(const glm::dvec3& p) const {
-  if (params_.kind != Kind::kPerlin || params_.fractal != Fractal::kFbm)
-    throw ParameterError("only sums (fbm) of Perlin noise have slopes");
+  const bool value = params_.kind == Kind::kValue;
+  if ((params_.kind != Kind::kPerlin && !value) || params_.fractal != Fractal::kFbm)
+    throw ParameterError("only sums (fbm) of Perlin and value noise have slopes");
+  if (value) {
+    const ValueAndSlope s = valueSlope(impl_->plan.values, params_, p);
+    return {s.value, s.slope};
+  }
   std::array<double, 4> place{p.x, p.y, p.z, 0.0};
   place[static_cast<std::size_t>(params_.dimensions)] = params_.time.value_or(0.0);
   Slope s{0.0, glm::dvec3(0.0)};
@@ -146,6 +140,17 @@ Half halfOf(float v) {
   return {static_cast<std::uint16_t>(sign | bits)};
 }
 
+// A normalised value.
+template <class T>
+T storedAs(const Plan& plan, double v) {
+  if constexpr (std::is_same_v<T, float>)
+    return static_cast<float>(v);
+  else if constexpr (std::is_same_v<T, Half>)
+    return halfOf(static_cast<float>(v));
+  else
+    return static_cast<T>(std::lround(std::numeric_limits<T>::max() * apply(plan.quantise, v)));
+}
+
 template <class T>
 void fillPointwiseAs(const FillJob& job, const Block& b) {
   const glm::ivec3& size = job.box.size;
@@ -155,15 +160,7 @@ void fillPointwiseAs(const FillJob& job, const Block& b) {
                                               static_cast<std::size_t>(job.channels);
       for (int x = b.x; x < b.x + b.width; ++x) {
         const glm::dvec3 p = (glm::dvec3(job.box.first + glm::ivec3(x, y, z)) + 0.5) * job.grid.spacing;
-        for (int c = 0; c < job.channels; ++c, ++out) {
-          const double v = job.noise->sample(p, c);
-          if constexpr (std::is_same_v<T, float>)
-            *out = static_cast<float>(v);
-          else if constexpr (std::is_same_v<T, Half>)
-            *out = halfOf(static_cast<float>(v));
-          else
-            *out = static_cast<T>(std::lround(std::numeric_limits<T>::max() * apply(job.plan->quantise, v)));
-        }
+        for (int c = 0; c < job.channels; ++c, ++out) *out = storedAs<T>(*job.plan, job.noise->sample(p, c));
       }
     }
 }
@@ -211,6 +208,13 @@ void Noise::fill(const Grid& grid, const Box& box, std::span<T> out) const {
     throw ParameterError("a buffer of " + std::to_string(out.size()) + " values is not what " +
                          text(box.size) + " samples of " + std::to_string(channels()) + " need");
 
+  if (params_.kind == Kind::kValue) {
+    fillValues(impl_->plan, params_, grid, box, [&](std::size_t at, std::span<const float> row) {
+      for (std::size_t i = 0; i < row.size(); ++i)
+        out[at + i] = storedAs<T>(impl_->plan, apply(impl_->plan.normalise, row[i]));
+    });
+    return;
+  }
   FillJob job{};
   job.noise = this;
   job.plan = &impl_->plan;

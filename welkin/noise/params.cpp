@@ -74,6 +74,8 @@ void describe(NoiseParams& p, ParamVisitor& v) {
   v.choice({"feature", "", "distance that cellular noise shows"}, p.feature);
   v.value({"distortion", "cells", "shift for a distorting noise of 1, in distorted noise", 0, 16},
           p.distortion);
+  v.choice({"interpolation", "", "between the lattice points of value noise"}, p.interpolation);
+  v.value({"smooth", "", "average value noise over the 27 lattice points around each"}, p.smooth);
   v.choice({"normalisation", "", "what becomes of the sum"}, p.normalisation);
   v.value({"seed", "", "another seed, another noise"}, p.seed);
   v.choice({"table", "", "where the lattice's hash comes from"}, p.table);
@@ -109,8 +111,8 @@ void validate(const NoiseParams& p) {
   const bool signs = p.kind == Kind::kPerlin || p.kind == Kind::kValue || p.kind == Kind::kDistorted;
   require(signs || p.fractal == Fractal::kFbm,
           "billow and ridged sums need noise of both signs: perlin, value or distorted");
-  require(p.table == Table::kSeeded || p.kind == Kind::kPerlin,
-          "the published table belongs to Perlin noise alone");
+  require(p.table == Table::kSeeded || p.kind == Kind::kPerlin || p.kind == Kind::kValue,
+          "the published table belongs to Perlin and value noise alone");
   require(p.table == Table::kSeeded || p.dimensions == 2 || !p.time,
           "the published table has three axes: in space none is left for time");
   require(p.kind != Kind::kPerlinWorley || p.normalisation != Normalisation::kUnitVariance,

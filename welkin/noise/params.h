@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "welkin/core/params.h"
+#include "welkin/noise/value.h"
 
 namespace welkin::noise {
 
@@ -35,7 +36,8 @@ enum class Feature { kF1, kF2, kF2MinusF1 };  // distance to the nearest point, 
 // Where the hash of the lattice comes from.
 enum class Table {
   kSeeded,     // from the seed; each octave has its own, and none repeats within 2^32 cells
-  kPublished,  // Perlin's permutation: his values exactly, repeats every 256 cells; Kind::kPerlin alone
+  kPublished,  // Perlin's permutation: his values exactly, repeats every 256 cells; or the hash of value
+               // noise as its source has it, the same for every octave (noise/value.h)
 };
 
 // What becomes of the sum v = sum_o amplitude persistence^o n_o.
@@ -58,6 +60,8 @@ struct NoiseParams {
   Fractal fractal = Fractal::kFbm;
   Feature feature = Feature::kF1;
   double distortion = 0.5;
+  Interpolation interpolation = Interpolation::kCosine;
+  bool smooth = true;
   Normalisation normalisation = Normalisation::kRaw;
   std::int64_t seed = 0;
   Table table = Table::kSeeded;

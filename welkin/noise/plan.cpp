@@ -59,6 +59,25 @@ struct Builder {
     return {dimensions(), axes, time, p.timePeriod * pace};
   }
 
+  ValueTerm value(int octave) const {
+    const double factor = std::pow(p.lacunarity, octave);
+    ValueTerm term{Value(valueSettings(octave)), {}, weight(octave)};
+    for (int i = 0; i < dimensions(); ++i) term.axes[i] = axis(0, i, factor, 0.0);
+    return term;
+  }
+
+  ValueSettings valueSettings(int octave) const {
+    ValueSettings s;
+    // Any seed but 0, which is the source's hash.
+    if (p.table == Table::kSeeded) s.seed = hashOf(static_cast<std::uint64_t>(p.seed), kNoise, octave) | 1u;
+    s.interpolation = p.interpolation;
+    s.smooth = p.smooth;
+    if (p.tile)
+      for (int i = 0; i < dimensions(); ++i)
+        s.period[i] = static_cast<int>(std::lround(p.frequency[i] * std::pow(p.lacunarity, octave)));
+    return s;
+  }
+
   double weight(int octave) const { return p.amplitude * std::pow(p.persistence, octave); }
 };
 
@@ -73,6 +92,11 @@ Spread spreadOf(const NoiseParams& p) {
   switch (p.kind) {
     case Kind::kPerlin:
       return {0.0, deviation, -bound, bound};
+    case Kind::kValue: {
+      const Value noise(Builder{p}.valueSettings(0));
+      const int dimensions = static_cast<int>(p.dimensions);
+      return {0.0, noise.deviation(dimensions), -noise.bound(dimensions), noise.bound(dimensions)};
+    }
     default:
       return {0.0, 1.0, -1.0, 1.0};
   }
@@ -128,6 +152,7 @@ Plan makePlan(const NoiseParams& p) {
       for (int o = 0; o < p.octaves; ++o) plan.gradients[0].push_back({b.lattice(kNoise, 0, o), b.weight(o)});
       break;
     case Kind::kValue:
+      for (int o = 0; o < p.octaves; ++o) plan.values.push_back(b.value(o));
       break;
     case Kind::kCellular:
       for (int o = 0; o < p.octaves; ++o)

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "welkin/noise/cells.h"
 #include "welkin/noise/gradient.h"
 #include "welkin/noise/params.h"
+#include "welkin/noise/value.h"
 
 namespace welkin::noise {
 
@@ -25,6 +27,12 @@ struct DistortedTerm {
   double weight;
 };
 
+struct ValueTerm {
+  Value noise;
+  std::array<Axis, 3> axes;  // in a plane two
+  double weight;
+};
+
 struct CellTerm {
   CellLattice lattice;
   double weight;
@@ -39,12 +47,27 @@ struct Affine {
 struct Plan {
   std::vector<std::vector<GradientTerm>> gradients;  // for each channel a sum; Perlin-Worley: one sum
   std::vector<DistortedTerm> distorted;
+  std::vector<ValueTerm> values;
   std::vector<CellTerm> cells;  // Perlin-Worley: its four, the weights unused
   Affine normalise;             // of raw sums
   Affine quantise;              // of normalised values, to [0, 1], for integer formats
 };
 
 Plan makePlan(const NoiseParams& params);
+
+// What a sum takes of one octave.
+inline double shaped(Fractal fractal, double n) {
+  switch (fractal) {
+    case Fractal::kFbm:
+      return n;
+    case Fractal::kBillow:
+      return 2.0 * std::abs(n) - 1.0;
+    case Fractal::kRidged:
+      break;
+  }
+  const double rest = 1.0 - std::abs(n);
+  return 2.0 * rest * rest - 1.0;
+}
 
 // Perlin-Worley's sums of 1 - F1 at three frequencies, each twice the one before; the finest has two.
 inline constexpr float kCoarse[3] = {0.625f, 0.25f, 0.125f}, kFine[2] = {0.75f, 0.25f};
