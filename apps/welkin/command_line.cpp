@@ -5,8 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
+#include "cloud_command.h"
+#include "noise_command.h"
+#include "param_flags.h"
 #include "usage_error.h"
 #include "welkin/core/params.h"
+#include "welkin/field/noise_texture.h"
 #include "welkin/scene/param_docs.h"
 #include "welkin/scene/scene.h"
 
@@ -105,19 +109,82 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       ->group("Running");
 }
 
+const char* typeNameOf(const scene::ParamDoc& doc) {
+  if (doc.type == "whole number") return "N";
+  if (doc.type == "number") return "X";
+  if (doc.type == "3 numbers") return "X,Y,Z";
+  return doc.type == "true or false" ? "true|false" : "NAME";
+}
+
+// A flag for each described parameter.
+void addParams(CLI::App* app, const Docs& docs, const std::vector<ParamFlag>& flags, ParamTexts& texts) {
+  for (const ParamFlag& flag : flags)
+    app->add_option_function<std::string>(
+           flag.name, [&texts, path = flag.path](const std::string& text) { texts[path] = text; },
+           wrapped(helpOf(docs, flag.path)))
+        ->type_name(typeNameOf(scene::docOf(docs, flag.path)))
+        ->group(flag.group);
+}
+
+void addTexelFile(CLI::App* app, TexelFileFlags& f, const std::string& formatDefault,
+                  const std::string& edgesDefault) {
+  add(app, "--format", f.format, "FORMAT",
+      "a, l, r, la, rgb or rgba and then 8, 16 (integers), 16f (halves) or 32f (floats), as in a8 or rgba16f "
+      "(default: " +
+          formatDefault + ")")
+      ->group("File");
+  add(app, "--mipmaps", f.mipmaps, "none|box|kaiser", "of .dds (default none)")->group("File");
+  add(app, "--edges", f.edges, "clamp|repeat",
+      "what mipmaps find beyond the border: the border itself, or for textures that tile the other side "
+      "(default " +
+          edgesDefault + ")")
+      ->group("File");
+  add(app, "--header", f.header, "auto|dx10",
+      "of .dds; auto: the old kind, which most programs read, unless only DX10 has the format")
+      ->group("File");
+}
+
+void describeOutput(CLI::App* app, OutputArgs& a, const char* files) {
+  add(app, "-o,--output", a.out, "OUT", files);
+  addTexelFile(app, a.file, "a8 in .dds, l8 in .png, floats in others", "repeat for textures that tile");
+  add(app, "--preview", a.preview, "FILE.png", "a picture to look at; of a volume, a sheet of slices")
+      ->group("File");
+  add(app, "--tile", a.tile, "CxR", "repeat the preview in columns and rows, to see whether it tiles")
+      ->group("File");
+  add(app, "--report", a.report, "FILE.json", "what was asked, what the values are like, a histogram")
+      ->group("Running");
+  add(app, "--threads", a.threads, "N", "processor threads; the result does not depend on it (default: all)")
+      ->group("Running");
+}
+
+void describeNoise(CLI::App* app, NoiseArgs& a) {
+  describeOutput(app, a.output, "picture or volume .dds .raw, picture .png .exr, volume .vdb");
+  add(app, "--size", a.size, "WxH[xD]", "texels; three numbers make a volume");
+  std::string presets;
+  for (const std::string_view name : kEnumNames<field::ThesisTexture>)
+    presets += (presets.empty() ? "" : " | ") + std::string(name);
+  add(app, "--preset", a.preset, "NAME",
+      "all parameters and the size of one of Tarantilis's textures, which other flags then change (" +
+          presets + ")");
+  addParams(app, noiseParamDocs(), noiseParamFlags(), a.params);
+}
+
+void describeCloud(CLI::App* app, CloudArgs& a) {
+  describeOutput(app, a.output, "volume .vdb .dds .raw");
+  add(app, "--size", a.size, "WxHxD",
+      "voxels east, north and up (default 48x36x24, or what holds the tower or the ellipsoids)");
+  add(app, "--ellipsoids", a.ellipsoids, "FILE.toml", "many ellipsoids, [[ellipsoid]] each");
+  app->add_flag("--cumulus", a.cumulus,
+                wrapped("a tower of cumulus, built from many ellipsoids by rule; Perlin noise of 5 octaves, "
+                        "shifted, with cells of a sixth of the width, and a threshold of 0.25, unless told"));
+  addParams(app, cloudParamDocs(), cloudParamFlags(), a.params);
+}
+
 void describeConvert(CLI::App* app, ConvertArgs& a) {
   app->add_option("in", a.in, "picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
       ->type_name("IN");
   app->add_option("out", a.out, "the same")->type_name("OUT");
-  add(app, "--format", a.format, "FORMAT",
-      "a, l, r, la, rgb or rgba and then 8, 16 (integers), 16f (halves) or 32f (floats), as in l8 or rgba16f "
-      "(default: what loses nothing)");
-  add(app, "--mipmaps", a.mipmaps, "none|box|kaiser", "of .dds (default none)");
-  add(app, "--edges", a.edges, "clamp|repeat",
-      "what mipmaps find beyond the border: the border itself, or for textures that tile the other side "
-      "(default clamp)");
-  add(app, "--header", a.header, "auto|dx10",
-      "of .dds; auto: the old kind, which most programs read, unless only DX10 has the format");
+  addTexelFile(app, a.file, "what loses nothing", "clamp");
 }
 
 // Names that one may have meant: "--flag" of this command, or commands.
@@ -187,6 +254,15 @@ Command parseCommandLine(int argc, const char* const* argv) {
       ->type_name("FILE");
   infoApp->add_flag("--json", info.json, "as JSON");
 
+  NoiseArgs noise;
+  CLI::App* noiseApp =
+      root.add_subcommand("noise", "Make a texture or volume of noise, or of cloud condensed from it");
+  describeNoise(noiseApp, noise);
+
+  CloudArgs cloud;
+  CLI::App* cloudApp = root.add_subcommand("cloud", "Make a volume of cloud density in ellipsoids");
+  describeCloud(cloudApp, cloud);
+
   ConvertArgs convert;
   CLI::App* convertApp = root.add_subcommand(
       "convert", "Write a picture or volume as another kind of file; nothing is lost unasked");
@@ -215,7 +291,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
   refuseExtras(&root, "");
   if (chosen.empty())
     throw UsageError(
-        "expected a command: render, metar, sun, info, convert or help; welkin --help explains them");
+        "expected a command: render, metar, sun, info, noise, cloud, convert or help; welkin --help explains "
+        "them");
   refuseExtras(chosen[0], chosen[0]->get_name());
   if (chosen[0] == renderApp) return render;
   if (chosen[0] == metarApp) return metar;
@@ -224,6 +301,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
     if (info.file.empty()) throw UsageError("info: expected a file");
     return info;
   }
+  if (chosen[0] == noiseApp) return noise;
+  if (chosen[0] == cloudApp) return cloud;
   if (chosen[0] == convertApp) return convert;
   if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};
   if (*topic == "scene") return helpScene;

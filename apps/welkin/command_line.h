@@ -3,6 +3,7 @@
 // described, and is checked by whoever uses them, so that one mistake has one message.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -38,9 +39,34 @@ struct InfoArgs {
   bool json = false;
 };
 
+// What a file of texels is to be (texel_flags.h).
+struct TexelFileFlags {
+  Flag format, mipmaps, edges, header;
+};
+
+// What every command takes that makes textures or volumes.
+struct OutputArgs {
+  Flag out;
+  TexelFileFlags file;
+  Flag preview, tile, report, threads;
+};
+
+struct NoiseArgs {
+  std::map<std::string, std::string> params;  // flags of described parameters: path and text (param_flags.h)
+  Flag preset, size;
+  OutputArgs output;
+};
+
+struct CloudArgs {
+  std::map<std::string, std::string> params;
+  Flag size, ellipsoids;
+  bool cumulus = false;
+  OutputArgs output;
+};
+
 struct ConvertArgs {
   std::string in, out;
-  Flag format, mipmaps, edges, header;
+  TexelFileFlags file;
 };
 
 // `welkin help scene`; help of commands is PrintText.
@@ -52,7 +78,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, ConvertArgs, HelpSceneArgs, PrintText>;
+using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, NoiseArgs, CloudArgs, ConvertArgs,
+                             HelpSceneArgs, PrintText>;
 
 // Throws UsageError, which names the nearest command or flag for one that does not exist.
 Command parseCommandLine(int argc, const char* const* argv);

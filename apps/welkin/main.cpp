@@ -8,11 +8,13 @@
 #include <exception>
 #include <new>
 
+#include "cloud_command.h"
 #include "command_line.h"
 #include "convert_command.h"
 #include "help_command.h"
 #include "info_command.h"
 #include "metar_command.h"
+#include "noise_command.h"
 #include "render_command.h"
 #include "render_settings.h"
 #include "sun_command.h"
@@ -27,6 +29,12 @@ int run(const RenderArgs& args) {
 }
 int run(const InfoArgs& args) {
   return runInfo(args);
+}
+int run(const NoiseArgs& args) {
+  return runNoise(args);
+}
+int run(const CloudArgs& args) {
+  return runCloud(args);
 }
 int run(const ConvertArgs& args) {
   return runConvert(args);

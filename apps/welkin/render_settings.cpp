@@ -50,15 +50,6 @@ void setList(Scene& s, const std::string& flag, const std::string& text, char se
   for (std::size_t i = 0; i < parts.size(); ++i) set(s, flag.c_str(), paths.begin()[i], parts[i]);
 }
 
-int wholeNumber(const char* flag, const std::string& text, int low, int high) {
-  int n = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  if (error != std::errc() || end != text.data() + text.size() || n < low || n > high)
-    throw UsageError(std::string(flag) + ": expected a whole number from " + std::to_string(low) + " to " +
-                     std::to_string(high) + ", found \"" + text + "\"");
-  return n;
-}
-
 void checkRenderer(const RenderArgs& a) {
   const std::string name = a.renderer.value_or("gpu");
   if (name == "reference")
@@ -87,6 +78,19 @@ void setOutput(RenderSettings& r, const std::string& out) {
 
 }  // namespace
 
+int wholeNumber(const char* flag, const std::string& text, int low, int high) {
+  int n = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  if (error != std::errc() || end != text.data() + text.size() || n < low || n > high)
+    throw UsageError(std::string(flag) + ": expected a whole number from " + std::to_string(low) + " to " +
+                     std::to_string(high) + ", found \"" + text + "\"");
+  return n;
+}
+
+int threadsOf(const std::string& text) {
+  return wholeNumber("--threads", text, 1, 1024);
+}
+
 void setPlace(Scene& s, const std::string& flag, const std::string& text) {
   setList(s, flag, text, ',', "LAT,LON or LAT,LON,ALT_M",
           {"place.latitude_deg", "place.longitude_deg", "place.altitude_m"}, 2);
@@ -102,7 +106,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     if (r.pngBits != 8 && r.pngBits != 16) throw UsageError("--bits is " + *a.bits + "; expected 8 or 16");
     if (r.video || r.format != io::ImageFormat::kPng) throw UsageError("--bits is for .png only");
   }
-  if (a.threads) r.threads = wholeNumber("--threads", *a.threads, 1, 1024);
+  if (a.threads) r.threads = threadsOf(*a.threads);
   if (a.report) r.report = *a.report;
   if (r.report == r.out)
     throw UsageError("--report: " + r.report + " is the picture already; expected another name");

@@ -22,6 +22,10 @@ struct RenderSettings {
   int threads = 0;                                 // 0: all
 };
 
+// A whole number from `low` to `high`, and the one that --threads takes. Throw UsageError.
+int wholeNumber(const char* flag, const std::string& text, int low, int high);
+int threadsOf(const std::string& text);
+
 // Sets place.* from "LAT,LON[,ALT_M]"; `flag` stands in messages.
 void setPlace(scene::Scene& scene, const std::string& flag, const std::string& text);
 

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cloud_command.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "interrupt.h"
+#include "progress_line.h"
+#include "render_settings.h"
+#include "report.h"
+#include "stopwatch.h"
+#include "texel_flags.h"
+#include "texel_output.h"
+#include "welkin/core/parallel.h"
+#include "welkin/field/cloud_map.h"
+#include "welkin/field/cumulus_tower.h"
+#include "welkin/io/atomic_file.h"
+#include "welkin/scene/ellipsoid_file.h"
+#include "welkin/scene/param_json.h"
+
+namespace welkin::app {
+
+// Everything that has a flag.
+struct CloudRequest {
+  field::CloudMapParams map;
+  field::Ellipsoid ellipsoid;
+  field::CumulusParams tower;
+};
+
+void describe(CloudRequest& r, ParamVisitor& v) {
+  describe(r.map, v);
+  v.group({"ellipsoid", "", "one ellipsoid; unless told it fills 95 % of the box"}, r.ellipsoid);
+  v.group({"tower", "", "a tower of cumulus"}, r.tower);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool anyOf(const ParamTexts& texts, std::string_view group) {
+  return std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.first.starts_with(group); });
+}
+
+std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& r) {
+  const auto flags = cloudParamFlags();
+  if (args.cumulus && args.ellipsoids) throw UsageError("--cumulus and --ellipsoids: expected one of them");
+  if (!args.cumulus && anyOf(args.params, "tower."))
+    throw UsageError("cloud: --width, --height and what else shapes a tower go with --cumulus");
+  if ((args.cumulus || args.ellipsoids) && anyOf(args.params, "ellipsoid."))
+    throw UsageError(
+        "cloud: --centre, --radii and --rotation describe the only ellipsoid; not with --cumulus or "
+        "--ellipsoids");
+  applyTexts(r, args.params, flags);
+  if (args.cumulus) {
+    r.map = field::cumulusMap(r.tower, r.map.voxelM);
+    applyTexts(r, args.params, flags);
+  }
+  if (args.size) {
+    if (!isVolume(*args.size))
+      throw UsageError("--size: expected WIDTHxHEIGHTxDEPTH, found \"" + *args.size + "\"");
+    const glm::ivec3 size = sizeOf(*args.size);
+    r.map.nx = size.x, r.map.ny = size.y, r.map.nz = size.z;
+  }
+  std::vector<field::Ellipsoid> ellipsoids;
+  if (args.cumulus) {
+    ellipsoids = field::cumulusTower(r.tower);
+  } else if (args.ellipsoids) {
+    ellipsoids = scene::readEllipsoids(*args.ellipsoids);
+  } else {
+    r.ellipsoid = field::centredEllipsoid(r.map);
+    applyTexts(r, args.params, flags);
+    return {r.ellipsoid};
+  }
+  if (args.ellipsoids && !args.size) field::fitBox(r.map, ellipsoids);
+  return ellipsoids;
+}
+
+TexelSource sourceOf(const CloudRequest& r, const std::string& out) {
+  TexelSource s;
+  s.command = "cloud";
+  s.size = {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny), static_cast<int>(r.map.nz)};
+  s.volume = true;
+  s.northUp = true;
+  const bool dds = out.ends_with(".dds") || out.ends_with(".DDS");
+  s.format = dds ? io::TexelFormat{io::Channels::kA, io::ValueType::kUnorm8}
+                 : io::TexelFormat{io::Channels::kR, io::ValueType::kFloat};
+  s.notes.voxelSizeM = glm::dvec3(r.map.voxelM);
+  s.notes.firstVoxelM = field::firstVoxelM(r.map);
+  s.notes.name = "density";
+  s.notes.metadata = {{"Software", "welkin " WELKIN_VERSION}, {"welkin_cloud", scene::toJson(r.map, -1)}};
+  return s;
+}
+
+Json reportOf(const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& output, std::int64_t voxels,
+              double ms) {
+  const TexelStatistics& s = output.statistics();
+  return {{"welkin", WELKIN_VERSION},
+          {"size", {r.map.nx, r.map.ny, r.map.nz}},
+          {"format", io::nameOf(output.shape().format)},
+          {"voxel_m", r.map.voxelM},
+          {"ellipsoids", ellipsoids},
+          {"cloud_voxels", voxels},
+          {"min", s.least()},
+          {"mean", s.mean()},
+          {"max", s.greatest()},
+          {"deviation", s.deviation()},
+          {"histogram", s.histogram()},
+          {"total_ms", ms},
+          {"peak_rss_mib", peakRssMib()},
+          {"cloud", Json::parse(scene::toJson(r.map))}};
+}
+
+}  // namespace
+
+std::vector<scene::ParamDoc> cloudParamDocs() {
+  return scene::documentParams<CloudRequest>();
+}
+
+std::vector<ParamFlag> cloudParamFlags() {
+  constexpr std::array<std::string_view, 3> kFromSize = {"nx", "ny", "nz"};
+  return paramFlags(
+      cloudParamDocs(), {},
+      {{"", "Map"}, {"[noise]", "Noise"}, {"[ellipsoid]", "One ellipsoid"}, {"[tower]", "Cumulus"}},
+      kFromSize);
+}
+
+int runCloud(const CloudArgs& args) {
+  if (!args.output.out) throw UsageError("cloud: expected -o OUT, the file to write");
+  if (args.output.threads) setThreadCount(threadsOf(*args.output.threads));
+  CloudRequest request;
+  const std::vector<field::Ellipsoid> ellipsoids = ellipsoidsOf(args, request);
+  try {
+    validate(request.map);
+  } catch (const ParameterError& e) {
+    throw UsageError("cloud: " + std::string(e.what()));
+  }
+  catchInterrupts();
+  const Stopwatch watch;
+  TexelOutput output(args.output, sourceOf(request, *args.output.out));
+  ProgressLine progress;
+  progress.begin("filling the cloud");
+  Volume<float> map = field::cloudMap(request.map, ellipsoids, [&](double fraction) {
+    throwIfInterrupted();
+    progress.show(fraction);
+  });
+  const auto voxels = std::count_if(map.data.begin(), map.data.end(), [](float d) { return d > 0.0f; });
+  progress.begin("writing");
+  const std::size_t slice = static_cast<std::size_t>(map.nx) * map.ny;
+  for (int z = 0; z < map.nz; ++z) {
+    throwIfInterrupted();
+    progress.show(static_cast<double>(z) / map.nz);
+    output.write(std::span(map.data).subspan(slice * z, slice));
+  }
+  output.close();
+  if (args.output.report) {
+    Json report = reportOf(request, ellipsoids.size(), output, voxels, watch.ms());
+    report["output"] = *args.output.out;
+    io::writeTextFile(*args.output.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  return 0;
+}
+
+}  // namespace welkin::app

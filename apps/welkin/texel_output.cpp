@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "texel_output.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "picture_writer.h"
+#include "texel_flags.h"
+#include "usage_error.h"
+#include "welkin/core/error.h"
+#include "welkin/core/parallel.h"
+
+namespace welkin::app {
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 16;
+
+bool isInteger(io::ValueType type) {
+  return type == io::ValueType::kUnorm8 || type == io::ValueType::kUnorm16;
+}
+
+glm::ivec2 tilesOf(const Flag& tile) {
+  if (!tile) return glm::ivec2(1);
+  glm::ivec2 n(0);
+  int end = 0;
+  const int read = std::sscanf(tile->c_str(), "%2dx%2d%n", &n.x, &n.y, &end);
+  if (read != 2 || static_cast<std::size_t>(end) != tile->size() || std::min(n.x, n.y) < 1 ||
+      std::max(n.x, n.y) > 16)
+    throw UsageError("--tile: expected COLUMNSxROWS of 1 to 16 each, 2x2 for instance, found \"" + *tile +
+                     "\"");
+  return n;
+}
+
+void checkPreview(const OutputArgs& args) {
+  if (args.tile && !args.preview) throw UsageError("--tile goes with --preview");
+  if (!args.preview) return;
+  if (!args.preview->ends_with(".png"))
+    throw UsageError("--preview: " + *args.preview + " is no .png; expected a name such as preview.png");
+  if (*args.preview == *args.out)
+    throw UsageError("--preview: " + *args.preview + " is the output already; expected another name");
+}
+
+}  // namespace
+
+void checkReport(const OutputArgs& args) {
+  if (!args.report) return;
+  if (args.report == args.out || args.report == args.preview)
+    throw UsageError("--report: " + *args.report + " is written already; expected another name");
+  checkWritable(*args.report);
+}
+
+TexelOutput::TexelOutput(const OutputArgs& args, const TexelSource& source)
+    : source_(source), previewPath_(args.preview.value_or("")) {
+  const io::TexelFileKind kind = fileKindOf(source.command, *args.out);
+  checkPreview(args);
+  const glm::ivec2 tiles = tilesOf(args.tile);
+  const io::DdsOptions dds = ddsOptions(source.command, args.file, kind,
+                                        source.tiles ? io::MipEdges::kRepeat : io::MipEdges::kClamp);
+  shape_ = {source.format, source.size.x, source.size.y, source.size.z, source.volume};
+  shape_.format = formatFor(args, kind, shape_, dds);
+  statistics_.emplace(shape_.format.type);
+  try {
+    if (args.preview)
+      preview_.emplace(source.size, io::countOf(source.format.channels), tiles, source.northUp);
+  } catch (const ParameterError& e) {
+    throw UsageError(e.what());
+  }
+  if (io::countOf(shape_.format.channels) != io::countOf(source.format.channels)) {
+    io::TexelShape narrow = shape_;
+    narrow.format.channels = source.format.channels;
+    converter_.emplace(narrow, shape_.format);
+  }
+  if (preview_) checkWritable(previewPath_);
+  checkReport(args);
+  writer_ = io::createTexelFile(*args.out, shape_, source.notes, dds);
+}
+
+void TexelOutput::write(std::span<float> values) {
+  const io::ValueType type = shape_.format.type;
+  const std::size_t size = io::bytesOf(type);
+  bytes_.resize(values.size() * size);
+  const auto store = [&] {
+    parallelFor(values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      io::fromFloats(values.subspan(begin, end - begin), type,
+                     std::span(bytes_).subspan(begin * size, (end - begin) * size));
+    });
+  };
+  if (!isInteger(type)) store();
+  if (source_.scale != 1.0f || source_.bias != 0.0f)
+    parallelFor(values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (float& v : values.subspan(begin, end - begin)) v = source_.scale * v + source_.bias;
+    });
+  if (isInteger(type)) store();
+  statistics_->add(values);
+  if (preview_) preview_->add(values);
+  writer_->write(converter_ ? converter_->convert(bytes_) : std::span<const std::byte>(bytes_));
+}
+
+void TexelOutput::close() {
+  writer_->close();
+  if (preview_) preview_->write(previewPath_);
+}
+
+}  // namespace welkin::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `welkin noise` and `welkin cloud` write: texels as they are made, a preview, and what they are like.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "command_line.h"
+#include "texel_preview.h"
+#include "texel_statistics.h"
+#include "welkin/io/convert_texels.h"
+#include "welkin/io/texel_file.h"
+
+namespace welkin::app {
+
+struct TexelSource {
+  std::string command;  // "noise", for messages
+  glm::ivec3 size{1};
+  bool volume = false;
+  io::TexelFormat format;           // where --format does not say: usual type, and the channels of the values
+  float scale = 1.0f, bias = 0.0f;  // takes values to [0, 1]; files of floats hold them as they are
+  bool tiles = false;               // mipmaps may take the other side beyond an edge
+  bool northUp = false;             // see TexelPreview
+  io::TexelNotes notes;
+};
+
+class TexelOutput {
+ public:
+  // Opens all files. Throws UsageError for flags that make no sense together, IoError for what cannot be
+  // written.
+  TexelOutput(const OutputArgs& args, const TexelSource& source);
+
+  const io::TexelShape& shape() const { return shape_; }
+  // The next whole rows of a picture or slices of a volume. Changes them.
+  void write(std::span<float> values);
+  // All values have come: the files appear.
+  void close();
+  const TexelStatistics& statistics() const { return *statistics_; }
+
+ private:
+  TexelSource source_;
+  std::string previewPath_;
+  io::TexelShape shape_;
+  std::unique_ptr<io::TexelWriter> writer_;
+  std::optional<TexelPreview> preview_;
+  std::optional<TexelStatistics> statistics_;
+  std::optional<io::TexelConverter> converter_;  // where the file has more channels than the values
+  std::vector<std::byte> bytes_;
+};
+
+// Checks the report's name and the folder that it goes to.
+void checkReport(const OutputArgs& args);
+
+}  // namespace welkin::app
