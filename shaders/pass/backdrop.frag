@@ -6,14 +6,7 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/sheet.glsl"
-
-const int kMaxShadows = 4;
-uniform Sheet uShadowSheets[kMaxShadows];
-uniform sampler2D uShadowPattern0;
-uniform sampler2D uShadowPattern1;
-uniform sampler2D uShadowPattern2;
-uniform sampler2D uShadowPattern3;
-uniform int uShadowCount;
+#include "lib/sheet_shadows.glsl"
 
 uniform mat3 uEnuFromCamera;      // OpenGL's camera: x right, y up, z backwards
 uniform vec4 uRayScale;           // from clip x, y: xy * clip + zw is the camera ray at depth 1
@@ -23,20 +16,7 @@ uniform float uScale;             // written value for each cd/m2
 
 layout(location = 0) out vec4 outColor;
 
-float sheetSunlight(Sheet sheet, sampler2D pattern, vec2 q) {
-  vec3 up = vec3(q, 0.0) + uKeyDirection * (sheet.heightM / max(uKeyDirection.z, 0.02));
-  float depth = sheetDepth(sheet, texture(pattern, vec2(sheetCoordinate(sheet, up))).x);
-  return 1.0 - sheetOpacity(sheet, depth / max(uKeyDirection.z, 0.1));
-}
-
-float groundSunlight(vec2 q, float dither) {
-  float through = 1.0;
-  if (uShadowCount > 0) through *= sheetSunlight(uShadowSheets[0], uShadowPattern0, q);
-  if (uShadowCount > 1) through *= sheetSunlight(uShadowSheets[1], uShadowPattern1, q);
-  if (uShadowCount > 2) through *= sheetSunlight(uShadowSheets[2], uShadowPattern2, q);
-  if (uShadowCount > 3) through *= sheetSunlight(uShadowSheets[3], uShadowPattern3, q);
-  return through;
-}
+float groundSunlight(vec2 q, float dither) { return sheetsSunlight(vec3(q, 0.0)); }
 
 #include "lib/background.glsl"
 

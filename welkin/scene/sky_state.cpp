@@ -78,11 +78,22 @@ double headingOf(const SkyState& s) {
 
 }  // namespace
 
+SkyLights lightsAt(const Scene& scene, double secondsAfter) {
+  SkyLights l;
+  l.time = addSeconds(scene.time, secondsAfter);
+  l.ephemeris = sky::ephemeris(
+      l.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
+  const sky::Light sun = sky::sunLight(l.ephemeris), moon = sky::moonLight(l.ephemeris);
+  // The sun lights the clouds until it stands where its light no longer reaches any of them.
+  l.bySun = l.ephemeris.sun.elevationDeg > -7.0;
+  l.lights = l.bySun ? std::vector{sun, moon} : std::vector{moon, sun};
+  return l;
+}
+
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous) {
   SkyState s;
   s.scene = scene;
   s.secondsAfter = secondsAfter;
-  s.time = addSeconds(scene.time, secondsAfter);
   s.weather = previous ? previous->weather : weatherOf(scene);
 
   const auto noise = previous ? previous->clouds->sharedNoise()
@@ -102,12 +113,11 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
       previous ? previous->atmosphere
                : std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
                                                    scene.place.altitudeM, glm::vec3(scene.ground.albedo));
-  s.ephemeris = sky::ephemeris(
-      s.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
-  const sky::Light sun = sky::sunLight(s.ephemeris), moon = sky::moonLight(s.ephemeris);
-  // The sun lights the clouds until it stands where its light no longer reaches any of them.
-  const bool bySun = s.ephemeris.sun.elevationDeg > -7.0;
-  s.lights = bySun ? std::vector{sun, moon} : std::vector{moon, sun};
+  SkyLights lights = lightsAt(scene, secondsAfter);
+  s.time = lights.time;
+  s.ephemeris = lights.ephemeris;
+  s.lights = std::move(lights.lights);
+  s.litBySun = lights.bySun;
   s.headingDeg = headingOf(s);
   s.ambient = ambientLight(s);
   return s;

@@ -24,13 +24,23 @@ struct AmbientLight {
   glm::vec3 haze{0};         // mean luminance about the eye where it does not, cd/m2
 };
 
+// Sun and moon of a scene at an instant.
+struct SkyLights {
+  UtcTime time;
+  sky::Ephemeris ephemeris;
+  std::vector<sky::Light> lights;  // lights[0] is the one that lights the clouds
+  bool bySun = true;               // it is the sun
+};
+SkyLights lightsAt(const Scene& scene, double secondsAfter);
+
 struct SkyState {
   Scene scene;
   UtcTime time;  // scene.time + secondsAfter
   double secondsAfter = 0.0;
   weather::Weather weather;
   sky::Ephemeris ephemeris;
-  std::vector<sky::Light> lights;  // sun and moon; lights[0] is the one that lights the clouds
+  std::vector<sky::Light> lights;  // as SkyLights
+  bool litBySun = true;
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::shared_ptr<const field::CloudField> clouds;
   std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
