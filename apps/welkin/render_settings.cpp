@@ -140,6 +140,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     s.output.width = size.width;
     s.output.height = size.height;
   }
+  set(s, "--technique", "technique", a.technique);
   set(s, "--quality", "output.quality", a.quality);
   set(s, "--exposure", "output.exposure_ev", a.exposure);
   if (a.noSunDisc) s.output.sunDisc = false;

@@ -22,4 +22,6 @@ constexpr double degrees(double radians) {
   return radians / kDegree;
 }
 
+inline constexpr double kOktas = 8.0;  // make the whole sky
+
 }  // namespace welkin

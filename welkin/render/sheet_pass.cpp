@@ -18,7 +18,7 @@ gpu::Program sheetProgram(std::size_t tier, bool volume) {
 }
 
 bool hasVolume(const SheetDraw& sheet) {
-  return sheet.look.perM.z > 0.0f;
+  return sheet.pattern->depth() > 1;
 }
 
 const SheetUniformNames kSheet = sheetUniformNames("uSheet");
@@ -46,7 +46,7 @@ SheetPass::SheetPass() {
 }
 
 gpu::Program& SheetPass::program(const SheetDraw& sheet) {
-  return programs_[static_cast<std::size_t>(sheet.look.tier) + (hasVolume(sheet) ? kTiers : 0)];
+  return programs_[static_cast<std::size_t>(sheet.tier) + (hasVolume(sheet) ? kTiers : 0)];
 }
 
 void SheetPass::setSky(const shading::Uniforms& sky) {

@@ -3,20 +3,22 @@
 #pragma once
 
 #include <array>
-#include <glm/vec3.hpp>
+#include <string>
 
 #include "welkin/gpu/mesh.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/sheet_look.h"
+#include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
 
 namespace welkin::render {
 
-// A sheet ready to be drawn. The pattern is a Texture2D, or a Texture3D for sheets with look.perM.z > 0.
+// A sheet ready to be drawn. The pattern is a Texture2D, or a Texture3D for domes.
 struct SheetDraw {
   const gpu::Mesh* mesh;
   const gpu::Texture* pattern;
+  scene::SheetTier tier;
   shading::SheetLook look;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/render/sky_renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/display.h"
 #include "welkin/render/light_volume_pass.h"
+#include "welkin/render/live_sky.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/uniforms.h"
@@ -53,6 +55,10 @@ struct SkyRenderer::Impl {
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
   gpu::Texture2D sum;  // of sub-frames
+  std::optional<LiveSky> live;
+
+  Picture drawVolumes(const scene::SkyState& state, const Progress& progress);
+  Picture drawSheets(const scene::SkyState& state, const Progress& progress);
 };
 
 SkyRenderer::SkyRenderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -75,36 +81,71 @@ std::vector<std::string> SkyRenderer::takeErrors() {
 
 Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
   impl_->context.makeCurrent();
+  if (scene::drawsSheets(state.scene.technique)) return impl_->drawSheets(state, progress);
+  return impl_->drawVolumes(state, progress);
+}
+
+Picture SkyRenderer::Impl::drawSheets(const scene::SkyState& state, const Progress& progress) {
+  if (state.scene.camera.projection != scene::Projection::kPerspective)
+    throw ParameterError(
+        "thin sheets are drawn in perspective alone; expected projection perspective, or technique volume");
+  Picture picture;
+  gpu::Stopwatch watch;
+  auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
+  const int width = static_cast<int>(state.scene.output.width),
+            height = static_cast<int>(state.scene.output.height);
+  if (!live) live.emplace();
+  live->update(state);
+  done("tables");
+
+  // Edges of clouds are soft and textures filtered: a few samples a pixel are enough.
+  const int samples = std::min(shading::marchSettings(state.scene.output.quality).subframes, 16);
+  const gpu::Texture2D texture(width, height, {.format = gpu::Format::kRgba32F});
+  const gpu::Framebuffer target(texture);
+  picture.luminance = Image<float>(width, height, 3);
+  for (int i = 0; i < samples; ++i) {
+    live->draw(shading::viewOf(state, glm::dvec2(quasiRandom2(i)) - 0.5), target);
+    const Image<float> sample = target.readPicture(0, 3);
+    for (std::size_t k = 0; k < sample.data.size(); ++k)
+      picture.luminance.data[k] += sample.data[k] / static_cast<float>(samples);
+    if (progress) progress((i + 1.0) / samples);
+  }
+  done("sheets");
+  picture.autoExposureEv = automaticExposureEv(picture.luminance);
+  done("exposure");
+  return picture;
+}
+
+Picture SkyRenderer::Impl::drawVolumes(const scene::SkyState& state, const Progress& progress) {
   Picture picture;
   gpu::Stopwatch watch;
   auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
   const int width = static_cast<int>(state.scene.output.width),
             height = static_cast<int>(state.scene.output.height);
 
-  if (!impl_->clouds || impl_->clouds->noise() != state.clouds->sharedNoise())
-    impl_->clouds.emplace(state.clouds->sharedNoise());
-  impl_->tables.update(state);
+  if (!clouds || clouds->noise() != state.clouds->sharedNoise()) clouds.emplace(state.clouds->sharedNoise());
+  tables.update(state);
   done("tables");
 
   const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state);
-  impl_->lightVolume.draw(state, layout, *impl_->clouds);
+  lightVolume.draw(state, layout, *clouds);
   done("light volume");
 
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  gpu::Program& p = impl_->sky.with(shading::marchDefines(layout, state.scene.camera.eyeM));
+  gpu::Program& p = sky.with(shading::marchDefines(layout, state.scene.camera.eyeM));
   done("compile");
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));
   setUniforms(p, shading::marchUniforms(settings));
   setUniforms(p, shading::projectorUniforms(state));
   setUniforms(p, shading::lightVolumeUniforms(layout));
-  impl_->clouds->bind(p);
-  impl_->tables.bind(p);
-  p.bind("uLightVolume", impl_->lightVolume.volume());
+  clouds->bind(p);
+  tables.bind(p);
+  p.bind("uLightVolume", lightVolume.volume());
 
-  if (impl_->sum.width() != width || impl_->sum.height() != height)
-    impl_->sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
-  const gpu::Framebuffer target(impl_->sum);
+  if (sum.width() != width || sum.height() != height)
+    sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
+  const gpu::Framebuffer target(sum);
   target.clear();
   // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
   // be rough.
@@ -113,7 +154,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
     p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
     for (std::size_t t = 0; t < tiles.size(); ++t) {
-      impl_->triangle.draw(p, target, {.tile = tiles[t], .blend = gpu::Blend::kAdd});
+      triangle.draw(p, target, {.tile = tiles[t], .blend = gpu::Blend::kAdd});
       if (!progress || (tiles.size() > 16 && t % 16 != 15 && t + 1 < tiles.size())) continue;
       gpu::finish();  // so that progress is true and Ctrl-C is heard
       progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);

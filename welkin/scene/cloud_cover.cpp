@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "welkin/core/random.h"
+#include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/field/cover.h"
 #include "welkin/scene/cloud_shapes.h"
@@ -14,7 +15,6 @@
 namespace welkin::scene {
 namespace {
 
-constexpr double kOktas = 8.0;
 constexpr field::CoverView kCalibrationView{.directions = 1000};
 constexpr field::CoverView kReportView{.directions = 3000};  // other directions than those of the calibration
 

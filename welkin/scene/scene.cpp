@@ -4,6 +4,7 @@
 #include <string>
 
 #include "welkin/core/error.h"
+#include "welkin/core/random.h"
 
 namespace welkin::scene {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 // Together the two limits keep a picture of floats under 2 GiB.
 constexpr double kMaxSide = 16384;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
+constexpr std::size_t kMaxSheets = 8;
 constexpr double kYearS = 366.0 * 86400.0;
 
 }  // namespace
@@ -70,12 +72,18 @@ void describe(Scene& s, ParamVisitor& v) {
   v.value({"visibility_m", "m",
            "meteorological optical range at the ground; absent: from the report, else 40 km", 10, 300000},
           s.visibilityM);
+  v.choice({"technique", "",
+            "how the layers are drawn: as volumes (auto, volume) or, in next to no time, as thin sheets on "
+            "planes, on planes bent over the earth (skyplane), or on domes"},
+           s.technique);
+  v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
   v.group({"camera", "", "where the eye is and what it sees"}, s.camera);
   v.group({"output", "", "the picture"}, s.output);
   v.group({"ground", "", "the ground below"}, s.ground);
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
+  v.list({"sheet", "", "a thin layer of cloud by hand, drawn beside those of the weather"}, s.sheets);
 }
 
 void validate(const Scene& s) {
@@ -92,6 +100,35 @@ void validate(const Scene& s) {
     throw ParameterError("there are " + std::to_string(s.layers.size()) + " layers; expected at most " +
                          std::to_string(weather::kMaxLayers));
   for (const weather::Layer& layer : s.layers) weather::validate(layer);
+  if (s.sheets.size() > kMaxSheets)
+    throw ParameterError("there are " + std::to_string(s.sheets.size()) + " sheets; expected at most " +
+                         std::to_string(kMaxSheets));
+  for (const Sheet& sheet : s.sheets) validate(sheet);
+  if (!s.sheets.empty() && !drawsSheets(s.technique))
+    throw ParameterError("[[sheet]] is drawn with technique plane, skyplane or dome, not beside volumes");
+}
+
+bool drawsSheets(Technique technique) {
+  return technique == Technique::kPlane || technique == Technique::kSkyPlane || technique == Technique::kDome;
+}
+
+std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather) {
+  std::vector<Sheet> sheets;
+  if (drawsSheets(scene.technique)) {
+    const SheetSurface surface = scene.technique == Technique::kPlane  ? SheetSurface::kPlane
+                                 : scene.technique == Technique::kDome ? SheetSurface::kDome
+                                                                       : SheetSurface::kSkyPlane;
+    for (const weather::Layer& layer : weather.layers) {
+      sheets.push_back(sheetOf(layer, surface));
+      sheets.back().tier = scene.tier;
+    }
+  }
+  sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
+  return sheets;
+}
+
+std::uint64_t sheetSeed(const Scene& scene, std::size_t index) {
+  return hashOf(static_cast<std::uint64_t>(scene.seed), 0x5ee7, index);
 }
 
 PictureSize naturalSize(Projection projection) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "welkin/core/params.h"
+#include "welkin/scene/sheet.h"
 #include "welkin/sky/atmosphere_params.h"
 #include "welkin/weather/weather.h"
 
@@ -20,6 +21,7 @@ struct Place {
   double latitudeDeg = 47.46;  // north positive
   double longitudeDeg = 8.55;  // east positive
   double altitudeM = 0.0;      // of the ground above mean sea level
+  bool operator==(const Place&) const = default;
 };
 void describe(Place& p, ParamVisitor& v);
 
@@ -33,6 +35,7 @@ struct Camera {
   double pitchDeg = 12.0;  // above the horizon
   double fovDeg = 70.0;    // across the width of a perspective picture
   Projection projection = Projection::kPerspective;
+  bool operator==(const Camera&) const = default;
 };
 void describe(Camera& c, ParamVisitor& v);
 
@@ -47,13 +50,24 @@ struct Output {
   std::int64_t frames = 1;
   double fps = 24.0;    // frames a second of video
   double speed = 60.0;  // simulated seconds for each second of video
+  bool operator==(const Output&) const = default;
 };
 void describe(Output& o, ParamVisitor& v);
 
 struct Ground {
   glm::dvec3 albedo{0.13, 0.14, 0.09};  // linear Rec. 709
+  bool operator==(const Ground&) const = default;
 };
 void describe(Ground& g, ParamVisitor& v);
+
+// How the layers of the weather are drawn.
+enum class Technique {
+  kAuto,    // as the scene needs: volumes
+  kVolume,  // marched volumes
+  kPlane,   // thin sheets on the surface of that name (SheetSurface)
+  kSkyPlane,
+  kDome,
+};
 
 struct Scene {
   Place place;
@@ -63,16 +77,26 @@ struct Scene {
   std::optional<std::string> metar;    // the weather as a report; wins over `layers`
   std::optional<double> visibilityM;   // absent: from the report, else 40 km
   std::vector<weather::Layer> layers;  // the weather by hand
+  Technique technique = Technique::kAuto;
+  SheetTier tier = SheetTier::kLit;  // of layers that are drawn as sheets
+  std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
   Output output;
+  bool operator==(const Scene&) const = default;
 };
 void describe(Scene& s, ParamVisitor& v);
 
 // What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases. Throws
 // ParameterError.
 void validate(const Scene& s);
+
+// The sheets of a scene: the layers of the weather where the technique draws them so, then those by hand.
+std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);
+bool drawsSheets(Technique technique);
+// Of the pattern of the sheet with this index among them.
+std::uint64_t sheetSeed(const Scene& scene, std::size_t index);
 
 // The size of a picture in this projection when nobody asked for one.
 struct PictureSize {
@@ -86,6 +110,9 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::Projection> =
     std::array<std::string_view, 4>{"perspective", "fisheye", "equirect", "cubemap"};
+template <>
+inline constexpr auto kEnumNames<scene::Technique> =
+    std::array<std::string_view, 5>{"auto", "volume", "plane", "skyplane", "dome"};
 template <>
 inline constexpr auto kEnumNames<scene::Quality> =
     std::array<std::string_view, 4>{"low", "medium", "high", "ultra"};

@@ -13,8 +13,6 @@
 namespace welkin::scene {
 namespace {
 
-constexpr double kOktas = 8.0;
-
 // Illuminance that a light sends through the air onto a horizontal plane at a height above the ground.
 glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light, double heightM) {
   const double mu = light.direction.z;
@@ -69,6 +67,20 @@ AmbientLight ambientLight(const SkyState& s) {
   return a;
 }
 
+// The cover of layers drawn as sheets: each as its pattern has it, all together by random overlap.
+DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather) {
+  DeliveredCover cover;
+  const std::vector<Sheet> sheets = sheetsOf(scene, weather);
+  double clear = 1.0;
+  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
+    const double share = deliveredCover(sheets[i], sheetSeed(scene, i));
+    cover.layers.push_back({weather.layers[i].oktas, kOktas * share});
+    clear *= 1.0 - share;
+  }
+  cover.sky = {weather.requestedOktas, kOktas * (1.0 - clear)};
+  return cover;
+}
+
 double headingOf(const SkyState& s) {
   if (s.scene.camera.headingDeg) return *s.scene.camera.headingDeg;
   if (s.scene.camera.projection != Projection::kPerspective) return 0.0;
@@ -104,7 +116,8 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     s.cover = previous->cover;
     s.skyCover = previous->skyCover;
   } else {
-    DeliveredCover cover = measureCover(s.weather, *s.clouds);
+    DeliveredCover cover =
+        drawsSheets(scene.technique) ? sheetCover(scene, s.weather) : measureCover(s.weather, *s.clouds);
     s.cover = std::move(cover.layers);
     s.skyCover = cover.sky;
   }

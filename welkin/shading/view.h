@@ -4,8 +4,11 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+
+#include "welkin/scene/sky_state.h"
 
 namespace welkin::shading {
 
@@ -25,5 +28,9 @@ struct ViewParts {
   float pixelRad = 0.0f;          // angle of a pixel in the middle
 };
 ViewParts partsOf(const View& view, int heightPx);
+
+// The camera of a scene, in a perspective picture of its size. shiftPx moves the picture's samples within
+// their pixels, x right, y down.
+View viewOf(const scene::SkyState& state, glm::dvec2 shiftPx = glm::dvec2(0.0));
 
 }  // namespace welkin::shading

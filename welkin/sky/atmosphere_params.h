@@ -16,6 +16,8 @@ struct AtmosphereParams {
   double aerosolG = 0.56;               // mean cosine of its phase function
   double ozoneDu = 344.0;               // ozone column, Dobson units; 344: mid-latitudes (ASTM G173)
   double airglowCdPerM2 = 1.7e-4;       // zenith luminance of the moonless night sky (22.0 mag/arcsec2)
+
+  bool operator==(const AtmosphereParams&) const = default;
 };
 void describe(AtmosphereParams& p, ParamVisitor& v);
 

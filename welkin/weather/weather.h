@@ -39,6 +39,8 @@ struct Layer {
   double windFromDeg = 270.0;      // true direction the layer's wind comes from
   double windSpeedMps = 8.0;
   bool baseAssumed = false;  // the report did not give the base; it is climatological
+
+  bool operator==(const Layer&) const = default;
 };
 void describe(Layer& layer, ParamVisitor& v);
 

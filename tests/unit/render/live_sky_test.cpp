@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sky in somebody's frame loop.
+#include "welkin/render/live_sky.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/testing/foreign_engine.h"
+#include "tests/testing/pictures.h"
+#include "tests/testing/skies.h"
+#include "welkin/gpu/context.h"
+
+namespace {
+std::atomic<long> gAllocations{0};
+}
+
+// Counted for the whole program; the tests look at differences.
+void* operator new(std::size_t size) {
+  ++gAllocations;
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace welkin::render {
+namespace {
+
+using namespace welkin::testing;
+using weather::Genus;
+
+class LiveSkyTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
+  }
+
+  // Two flat layers, and a dome, small enough to be quick.
+  static scene::Scene thinScene(double sunElevationDeg = 35.0) {
+    scene::Scene s = cloudyScene(sunElevationDeg, {Genus::kStratocumulus, Genus::kCirrus});
+    s.technique = scene::Technique::kSkyPlane;
+    scene::Sheet dome = scene::sheetOf(scene::SheetPreset::kThesisDome);
+    dome.texels = 32;
+    dome.heightM = 3000.0;
+    s.sheets.push_back(dome);
+    s.output.width = 64;
+    s.output.height = 36;
+    return s;
+  }
+
+  Image<float> drawn(LiveSky& sky) {
+    sky.draw(shading::viewOf(sky.state()), target);
+    return target.readPicture(0, 3);
+  }
+
+  gpu::Context context{{.debug = true}};
+  gpu::Texture2D texture{64, 36, {.format = gpu::Format::kRgba32F}};
+  gpu::Framebuffer target{texture};
+};
+
+TEST_F(LiveSkyTest, AFrameIsTheSameFirstOrAfterOthers) {
+  const scene::Scene s = thinScene();
+  LiveSky first;
+  first.update(s, 100.0);
+  const Image<float> expected = drawn(first);
+  EXPECT_EQ(firstBadValue(expected), -1);
+
+  LiveSky other;
+  other.update(thinScene(10.0), 0.0);
+  drawn(other);
+  for (int i = 0; i < 20; ++i) {
+    other.update(s, 7.7 * i);
+    drawn(other);
+  }
+  other.update(s, 100.0);
+  EXPECT_EQ(drawn(other).data, expected.data);
+}
+
+// From noon to midnight and back.
+TEST_F(LiveSkyTest, ACutAndBackGivesTheSameFrame) {
+  const scene::Scene s = thinScene(80.0);
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const Image<float> noon = drawn(sky);
+  sky.update(s, 43200.0);
+  const Image<float> midnight = drawn(sky);
+  EXPECT_LT(luminanceOf(meanOf(midnight)), 1e-3 * luminanceOf(meanOf(noon)));
+  sky.update(s, 0.0);
+  EXPECT_EQ(drawn(sky).data, noon.data);
+}
+
+TEST_F(LiveSkyTest, SheetsHideAndShadeAndMove) {
+  scene::Scene s = thinScene();
+  s.camera.pitchDeg = 40.0;
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const Image<float> start = drawn(sky);
+  sky.update(s, 60.0);
+  EXPECT_NE(drawn(sky).data, start.data);
+  s.layers.clear();
+  s.sheets.clear();
+  sky.update(s, 0.0);
+  const Image<float> clear = drawn(sky);
+  EXPECT_NE(clear.data, start.data);
+  // Without sheets the backdrop is the sky as it is.
+  EXPECT_GT(meanOf(clear, 0, 18).z, meanOf(clear, 0, 18).x);
+}
+
+TEST_F(LiveSkyTest, AnEngineFindsItsStateAgain) {
+  LiveSky sky;
+  const ForeignEngine engine;
+  const auto before = engine.state();
+  sky.update(thinScene(), 0.0);
+  EXPECT_EQ(engine.state(), before);
+  sky.draw(shading::viewOf(sky.state()), gpu::Target(engine.framebuffer(), {0, 0, 16, 8}), {.scale = 1e-4f});
+  EXPECT_EQ(engine.state(), before);
+}
+
+TEST_F(LiveSkyTest, DrawsAllocateNothing) {
+  LiveSky sky;
+  sky.update(thinScene(), 0.0);
+  const shading::View view = shading::viewOf(sky.state());
+  sky.draw(view, target);
+  const long before = gAllocations;
+  // Mesa's own allocations are plain malloc.
+  for (int i = 0; i < 3; ++i) sky.draw(view, target);
+  EXPECT_EQ(gAllocations - before, 0);
+}
+
+// Only the clouds, over what an engine has drawn.
+TEST_F(LiveSkyTest, WithoutABackdropWhatIsThereShowsThrough) {
+  scene::Scene s = thinScene();
+  s.sheets.clear();
+  s.layers.resize(1);
+  s.layers[0].oktas = 4.0;
+  s.camera.pitchDeg = 45.0;
+  LiveSky sky;
+  sky.update(s, 0.0);
+  target.clear(0, {1e7f, 1e7f, 1e7f, 1.0f});
+  sky.draw(shading::viewOf(sky.state()), target, {.backdrop = false});
+  const Image<float> got = target.readPicture(0, 3);
+  int untouched = 0;
+  for (std::size_t i = 0; i < got.data.size(); i += 3) untouched += got.data[i] == 1e7f;
+  EXPECT_GT(untouched, 64 * 36 / 10);
+  EXPECT_LT(untouched, 64 * 36 * 9 / 10);
+}
+
+}  // namespace
+}  // namespace welkin::render

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/sheet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "welkin/core/error.h"
+#include "welkin/scene/scene.h"
+#include "welkin/scene/scene_file.h"
+
+namespace welkin::scene {
+namespace {
+
+TEST(Sheet, CoverIsDelivered) {
+  for (const double oktas : {0.0, 1.0, 3.0, 5.0, 7.5, 8.0})
+    for (const std::uint64_t seed : {1ull, 99ull}) {
+      Sheet sheet;
+      sheet.texels = 128;
+      sheet.oktas = oktas;
+      // Counted here by opacity, texel by texel.
+      const Image<float> pattern = flatPattern(sheet, seed);
+      const field::Condensation law = condensationOf(sheet, pattern.data);
+      double count = 0.0;
+      for (const float p : pattern.data) count += law.opacity(p) >= 0.2591;  // 1 - exp(-0.3), a little less
+      const double cover = count / static_cast<double>(pattern.data.size());
+      EXPECT_NEAR(cover, oktas / 8.0, 0.001) << oktas;
+      EXPECT_NEAR(deliveredCover(sheet, seed), cover, 0.001) << oktas;
+    }
+}
+
+TEST(Sheet, PatternTilesAndGoesByItsSeed) {
+  Sheet sheet;
+  sheet.texels = 256;
+  const Image<float> a = flatPattern(sheet, 1), b = flatPattern(sheet, 1 << 20);
+  EXPECT_NE(a.data, b.data);
+  double seam = 0.0, within = 0.0;
+  for (int y = 0; y < 256; ++y) {
+    seam += std::abs(a.at(255, y) - a.at(0, y)) / 256.0;
+    for (int x = 0; x < 255; ++x) within += std::abs(a.at(x + 1, y) - a.at(x, y)) / (256.0 * 255.0);
+  }
+  EXPECT_NEAR(seam / within, 1.0, 0.25);
+}
+
+TEST(Sheet, ThesisPresetsHaveItsNumbers) {
+  const Sheet few = sheetOf(SheetPreset::kThesisFew);
+  EXPECT_EQ(few.octaves, 8);
+  EXPECT_EQ(few.frequency, 16);
+  EXPECT_EQ(few.cutoff, 0.8);
+  EXPECT_EQ(few.heightM, 900.0);
+  EXPECT_EQ(sheetOf(SheetPreset::kThesisDome).surface, SheetSurface::kDome);
+}
+
+TEST(Sheet, WeatherBecomesSheets) {
+  Scene s;
+  s.layers = {weather::typicalLayer(weather::Genus::kStratocumulus, 47.0),
+              weather::typicalLayer(weather::Genus::kCirrus, 47.0)};
+  weather::Weather w;
+  w.layers = s.layers;
+  EXPECT_TRUE(sheetsOf(s, w).empty());  // volumes
+  s.technique = Technique::kSkyPlane;
+  s.sheets.emplace_back();
+  const auto sheets = sheetsOf(s, w);
+  ASSERT_EQ(sheets.size(), 3u);
+  EXPECT_GT(sheets[0].heightM, s.layers[0].baseM);
+  EXPECT_LT(sheets[0].heightM, s.layers[0].topM);
+  EXPECT_EQ(sheets[1].oktas, s.layers[1].oktas);
+  EXPECT_LT(sheets[0].density, sheets[1].density);  // cirrus is thinner
+}
+
+TEST(Sheet, IsReadFromSceneFiles) {
+  const Scene s =
+      parseScene("technique = \"plane\"\n[[sheet]]\ntier = \"embossed\"\nheight_m = 900\noktas = 2\n",
+                 "t.toml")
+          .scene;
+  ASSERT_EQ(s.sheets.size(), 1u);
+  EXPECT_EQ(s.technique, Technique::kPlane);
+  EXPECT_EQ(s.sheets[0].tier, SheetTier::kEmbossed);
+  EXPECT_EQ(s.sheets[0].oktas, 2.0);
+  EXPECT_EQ(parseScene(sceneToToml(s), "again.toml").scene, s);
+  EXPECT_THROW(parseScene("[[sheet]]\nheigth_m = 900\n", "t.toml"), ParseError);
+  EXPECT_THROW(validate(parseScene("[[sheet]]\nsurface = \"dome\"\ntexels = 512\n", "t.toml").scene),
+               ParameterError);
+}
+
+}  // namespace
+}  // namespace welkin::scene

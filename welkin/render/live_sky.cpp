@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/live_sky.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "welkin/core/error.h"
+#include "welkin/gpu/mesh.h"
+#include "welkin/gpu/state_guard.h"
+#include "welkin/render/cloud_textures.h"
+#include "welkin/render/programs.h"
+#include "welkin/render/sheet_pass.h"
+#include "welkin/render/sky_textures.h"
+#include "welkin/shading/sheet_look.h"
+#include "welkin/shading/sheet_mesh.h"
+#include "welkin/shading/uniforms.h"
+
+namespace welkin::render {
+namespace {
+
+constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
+constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
+                                                                  "uShadowPattern2", "uShadowPattern3"};
+
+// A thin layer with all that it needs on the device.
+struct LiveSheet {
+  scene::Sheet sheet;
+  shading::SheetMatter matter;
+  gpu::Mesh mesh;
+  gpu::Texture2D flat;    // the pattern, or
+  gpu::Texture3D volume;  // of a dome
+  const gpu::Texture& pattern() const {
+    return flat.id() ? static_cast<const gpu::Texture&>(flat) : static_cast<const gpu::Texture&>(volume);
+  }
+};
+
+LiveSheet makeSheet(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM) {
+  constexpr gpu::TextureOptions kTiling{.format = gpu::Format::kR16F,
+                                        .filter = gpu::Filter::kMipmap,
+                                        .wrapX = gpu::Wrap::kRepeat,
+                                        .wrapY = gpu::Wrap::kRepeat,
+                                        .wrapZ = gpu::Wrap::kRepeat};
+  LiveSheet live;
+  live.sheet = sheet;
+  if (sheet.surface == scene::SheetSurface::kDome) {
+    const Volume<float> pattern = scene::domePattern(sheet, seed);
+    live.matter = shading::matterOf(sheet, pattern.data, seed);
+    live.volume = gpu::Texture3D(pattern, kTiling);
+    live.volume.makeMipmaps();
+  } else {
+    const Image<float> pattern = scene::flatPattern(sheet, seed);
+    live.matter = shading::matterOf(sheet, pattern.data, seed);
+    live.flat = gpu::Texture2D(pattern, kTiling);
+    live.flat.makeMipmaps();
+  }
+  const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);
+  constexpr std::array<int, 2> kAttributes = {3, 1};
+  live.mesh = gpu::Mesh(mesh.vertices, kAttributes, mesh.indices);
+  return live;
+}
+
+}  // namespace
+
+struct LiveSky::Impl {
+  SheetPass sheetPass;
+  gpu::Program backdrop =
+      fullscreenProgram("pass/backdrop.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}});
+  gpu::FullscreenTriangle triangle;
+  SkyTextures tables;
+  std::array<SheetUniformNames, kMaxShadows> shadowNames;
+
+  std::optional<scene::SkyState> state;
+  std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
+  std::vector<LiveSheet> sheets;        // from the ground up
+
+  void update(const scene::SkyState& next);
+  void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
+  void drawSheet(const LiveSheet& sheet, const shading::ViewParts& view, const gpu::Target& target,
+                 float scale);
+  shading::SheetLook look(const LiveSheet& sheet, const shading::ViewParts& view) const {
+    return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
+                           state->lights[0].direction);
+  }
+};
+
+LiveSky::LiveSky() {
+  const gpu::StateGuard guard;
+  impl_ = std::make_unique<Impl>();
+  for (std::size_t i = 0; i < kMaxShadows; ++i)
+    impl_->shadowNames[i] = sheetUniformNames("uShadowSheets[" + std::to_string(i) + "]");
+}
+
+LiveSky::~LiveSky() = default;
+
+const scene::SkyState& LiveSky::state() const {
+  return *impl_->state;
+}
+
+void LiveSky::update(const scene::Scene& scene, double secondsAfter) {
+  const bool same = impl_->state && impl_->state->scene == scene;
+  if (same && impl_->state->secondsAfter == secondsAfter) return;
+  update(scene::buildSky(scene, secondsAfter, same ? &*impl_->state : nullptr));
+}
+
+void LiveSky::update(const scene::SkyState& state) {
+  const gpu::StateGuard guard;
+  impl_->update(state);
+}
+
+void LiveSky::Impl::update(const scene::SkyState& next) {
+  const bool same = state && state->scene == next.scene;
+  state = next;
+  if (!same) {
+    sheets.clear();
+    scene::Scene thin = state->scene;
+    if (thin.technique == scene::Technique::kVolume)
+      throw ParameterError("a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
+    if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
+    const std::vector<scene::Sheet> wanted = scene::sheetsOf(thin, state->weather);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      sheets.push_back(
+          makeSheet(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM()));
+    std::stable_sort(sheets.begin(), sheets.end(), [](const LiveSheet& a, const LiveSheet& b) {
+      return a.sheet.heightM < b.sheet.heightM;
+    });
+    if (!clouds || clouds->noise() != state->clouds->sharedNoise())
+      clouds.emplace(state->clouds->sharedNoise());
+  }
+  tables.updateLive(*state);
+  const shading::Uniforms sky = shading::skyUniforms(*state);
+  sheetPass.setSky(sky);
+  setUniforms(backdrop, sky);
+}
+
+void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
+  gpu::Program& p = backdrop;
+  p.set("uEyeM", static_cast<float>(view.eyeM.z));
+  p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
+  p.set("uEnuFromCamera", view.enuFromCamera);
+  p.set("uRayScale", view.rayScale);
+  p.set("uViewportPx", glm::vec4(target.area.x, target.area.y, target.area.width, target.area.height));
+  p.set("uPixelRad", view.pixelRad);
+  p.set("uScale", scale);
+  tables.bind(p);
+  clouds->bind(p);
+  std::size_t shadows = 0;
+  for (const LiveSheet& sheet : sheets) {
+    if (shadows == kMaxShadows || !sheet.flat.id()) continue;
+    setSheet(p, shadowNames[shadows], look(sheet, view));
+    p.bind(kShadowPatterns[shadows], sheet.flat);
+    ++shadows;
+  }
+  p.set("uShadowCount", static_cast<int>(shadows));
+  triangle.draw(p, target);
+}
+
+void LiveSky::Impl::drawSheet(const LiveSheet& sheet, const shading::ViewParts& view,
+                              const gpu::Target& target, float scale) {
+  sheetPass.draw({&sheet.mesh, &sheet.pattern(), sheet.sheet.tier, look(sheet, view)}, view, tables, target,
+                 scale);
+}
+
+void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
+  Impl& m = *impl_;
+  const gpu::StateGuard guard;
+  const shading::ViewParts parts = shading::partsOf(view, target.area.height);
+  if (options.backdrop) m.drawBackdrop(parts, target, options.scale);
+  // Far to near: down to the eye from above, and up to it from below.
+  const auto nearest = std::find_if(m.sheets.begin(), m.sheets.end(),
+                                    [&](const LiveSheet& s) { return s.sheet.heightM > parts.eyeM.z; });
+  for (auto s = m.sheets.end(); s != nearest;) m.drawSheet(*--s, parts, target, options.scale);
+  for (auto s = m.sheets.begin(); s != nearest; ++s) m.drawSheet(*s, parts, target, options.scale);
+}
+
+}  // namespace welkin::render

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sky of thin clouds inside somebody's frame loop:
+//
+//   LiveSky sky;                                    // with the engine's context current
+//   every frame:  sky.update(scene, seconds);
+//                 for each view: sky.draw(view, {framebuffer, {0, 0, width, height}});
+//
+// No global state: several skies, several views a frame, several contexts may live side by side. What is
+// drawn depends on the scene, the seconds and the view alone, never on what was drawn before. The engine's
+// OpenGL state is as it was after every call. After the first update of a scene nothing is compiled and no
+// OpenGL object is made; draws allocate no memory at all. Belongs to the context that was current when it was
+// made; not thread-safe.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "welkin/gpu/draw.h"
+#include "welkin/scene/sky_state.h"
+#include "welkin/shading/view.h"
+
+namespace welkin::render {
+
+struct LiveOptions {
+  float scale = 1.0f;    // written for each cd/m2: 1 into float targets, an exposure into others
+  bool backdrop = true;  // clear sky, discs of sun and moon, ground; else only the clouds, over what is there
+};
+
+class LiveSky {
+ public:
+  // Needs OpenGL 3.3. Throws GpuError.
+  LiveSky();
+  ~LiveSky();
+  LiveSky(const LiveSky&) = delete;
+  LiveSky& operator=(const LiveSky&) = delete;
+
+  // The sky `secondsAfter` the scene's time. Its sheets are the scene's, and its layers of cloud as sheets on
+  // the surface that the scene's technique names (auto: the sky plane). Throws as buildSky does, and
+  // ParameterError for the technique volume.
+  void update(const scene::Scene& scene, double secondsAfter);
+  // The same of a sky that is there already.
+  void update(const scene::SkyState& state);
+
+  // Draws all of it over the target, far to near, as linear Rec. 709. After update().
+  void draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options = {});
+
+  const scene::SkyState& state() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace welkin::render

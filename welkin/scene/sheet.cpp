@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/sheet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/error.h"
+#include "welkin/core/units.h"
+#include "welkin/field/quantile.h"
+#include "welkin/noise/noise.h"
+#include "welkin/scene/cloud_shapes.h"
+
+namespace welkin::scene {
+namespace {
+
+constexpr double kMaxDomeTexels = 256;
+
+// Optical depth from which on observers call it cloud.
+constexpr double kVisibleDepth = 0.3;
+
+noise::NoiseParams patternOf(const Sheet& sheet, std::uint64_t seed) {
+  const bool volume = sheet.surface == SheetSurface::kDome;
+  noise::NoiseParams p;
+  p.dimensions = volume ? 3 : 2;
+  p.frequency = glm::dvec3(static_cast<double>(sheet.frequency));
+  p.octaves = sheet.octaves;
+  p.amplitude = sheet.amplitude;
+  p.persistence = sheet.persistence;
+  p.normalisation = noise::Normalisation::kThesis;
+  p.seed = static_cast<std::int64_t>(seed >> 11);  // described seeds have 53 bits
+  return p;
+}
+
+}  // namespace
+
+void describe(Sheet& s, ParamVisitor& v) {
+  v.choice({"surface", "",
+            "plane: a flat square about the eye; skyplane: bent over the earth, to the horizon; dome: cuts "
+            "through a volume of noise"},
+           s.surface);
+  v.choice({"tier", "",
+            "how it is lit: flat, embossed by the pattern's slope, or lit by its depth towards the sun"},
+           s.tier);
+  v.value({"height_m", "m", "height above the ground", 10, 25000}, s.heightM);
+  v.value({"thickness_m", "m", "depth over which its optical depth is spread", 1, 10000}, s.thicknessM);
+  v.value({"tile_m", "m", "after which the pattern repeats", 100, 500000}, s.tileM);
+  v.value({"texels", "", "of the pattern, a side; a dome has at most 256", 16, 4096}, s.texels);
+  v.value({"frequency", "", "cells of the first octave in a tile", 1, 512}, s.frequency);
+  v.value({"octaves", "", "of the pattern", 1, 16}, s.octaves);
+  v.value({"amplitude", "", "of the first octave", 0.01, 4}, s.amplitude);
+  v.value({"persistence", "", "amplitude of an octave over that of the one before", 0.01, 1}, s.persistence);
+  v.value({"cutoff", "", "value of the pattern above which it is cloud", 0, 1}, s.cutoff);
+  v.value({"oktas", "okta", "eighths of the sheet that are cloud; wins over cutoff", 0, 8}, s.oktas);
+  v.value(
+      {"density", "", "share of light that each of 255 levels of the pattern above the cutoff lets through",
+       0.01, 0.9999},
+      s.density);
+  v.value({"bias", "", "the most that the sheet hides", 0, 1}, s.bias);
+  v.value({"wind_from_deg", "deg", "direction its wind comes from, clockwise from north", 0, 360},
+          s.windFromDeg);
+  v.value({"wind_speed_mps", "m/s", "speed of its wind", 0, 150}, s.windSpeedMps);
+  v.value({"rise_mps", "m/s", "speed of the pattern up through a dome, which forms and dissolves its clouds",
+           -50, 50},
+          s.riseMps);
+}
+
+void validate(const Sheet& s) {
+  if (s.surface == SheetSurface::kDome && s.texels > kMaxDomeTexels)
+    throw ParameterError("a dome's pattern of " + std::to_string(s.texels) +
+                         " texels a side is too large; expected at most " +
+                         std::to_string(static_cast<int>(kMaxDomeTexels)));
+}
+
+Sheet sheetOf(SheetPreset preset) {
+  Sheet s;
+  s.texels = 1024;
+  switch (preset) {
+    case SheetPreset::kThesisOvercast:
+      s.heightM = 1400.0;
+      s.octaves = 10, s.frequency = 3, s.amplitude = 0.5, s.persistence = 0.7;
+      s.cutoff = 0.6, s.density = 0.95;
+      break;
+    case SheetPreset::kThesisBroken:
+      s.heightM = 1200.0;
+      s.octaves = 10, s.frequency = 6, s.amplitude = 1.0, s.persistence = 0.4;
+      s.cutoff = 0.7, s.density = 0.96;
+      break;
+    case SheetPreset::kThesisFew:
+      s.heightM = 900.0;
+      s.octaves = 8, s.frequency = 16, s.amplitude = 0.8, s.persistence = 0.4;
+      s.cutoff = 0.8, s.density = 0.96;
+      break;
+    case SheetPreset::kThesisDome:
+      s.surface = SheetSurface::kDome;
+      s.texels = 128;
+      s.octaves = 6, s.frequency = 2, s.amplitude = 0.7, s.persistence = 0.5;
+      s.cutoff = 0.7;
+      s.riseMps = 2.0;
+      break;
+  }
+  return s;
+}
+
+Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
+  const field::CloudLayer shape = shapeOf(layer, 0, 0.0);
+  Sheet s;
+  s.surface = surface;
+  s.heightM = 0.7 * layer.baseM + 0.3 * layer.topM;  // where most of a cloud's body is
+  s.thicknessM = layer.topM - layer.baseM;
+  // Two periods of the layer's own pattern, each a dozen cells.
+  s.tileM = std::clamp(2.0 * static_cast<double>(shape.cellM), 100.0, 500000.0);
+  s.frequency = 24;
+  s.texels = 1024;
+  s.octaves = 6;
+  s.amplitude = 0.5;  // never clamped
+  if (surface == SheetSurface::kDome) {
+    // A quarter of that, as a volume of noise has few texels a side.
+    s.tileM *= 0.25;
+    s.texels = 128;
+    s.frequency = 6;
+    s.octaves = 5;
+  }
+  s.oktas = layer.oktas;
+  // A cloud's optical depth, on average, where its pattern exceeds the cutoff by a tenth.
+  const double depth = 0.4 * layer.extinctionPerM * (layer.topM - layer.baseM);
+  s.density = std::clamp(std::exp(-depth / (0.1 * 255.0)), 0.01, 0.9999);
+  s.windFromDeg = layer.windFromDeg;
+  s.windSpeedMps = layer.windSpeedMps;
+  return s;
+}
+
+Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed) {
+  const int n = static_cast<int>(sheet.texels);
+  Image<float> pattern(n, n, 1);
+  noise::Noise(patternOf(sheet, seed)).fill(noise::Grid::tile({n, n, 1}), std::span(pattern.data));
+  return pattern;
+}
+
+Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed) {
+  const int n = static_cast<int>(sheet.texels);
+  Volume<float> pattern(n, n, n, 1);
+  noise::Noise(patternOf(sheet, seed)).fill(noise::Grid::tile({n, n, n}), std::span(pattern.data));
+  return pattern;
+}
+
+field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern) {
+  field::Condensation law = field::thesisTexture(sheet.cutoff, sheet.density);
+  law.bias = sheet.bias;
+  if (!sheet.oktas) return law;
+  if (*sheet.oktas <= 0.0) {
+    law.threshold = 1.0;  // many texels may have the greatest value: not even they
+    return law;
+  }
+  const double visible = -std::expm1(-kVisibleDepth);
+  // Whoever asks for a sheet that hides less than a visible cloud gets what it has above the threshold.
+  return field::withCover(law, field::quantileAbove(pattern, *sheet.oktas / kOktas),
+                          law.bias > visible ? visible : 0.0);
+}
+
+double deliveredCover(const Sheet& sheet, std::uint64_t seed) {
+  const auto visible = [&](std::span<const float> pattern) {
+    const field::Condensation law = condensationOf(sheet, pattern);
+    // Rounded down, as the texel on the threshold itself counts.
+    const double least = law.threshold + (1.0 - 1e-6) * kVisibleDepth / law.k;
+    const auto count = std::count_if(pattern.begin(), pattern.end(), [&](float p) { return p >= least; });
+    return static_cast<double>(count) / static_cast<double>(pattern.size());
+  };
+  if (sheet.surface == SheetSurface::kDome) return visible(domePattern(sheet, seed).data);
+  return visible(flatPattern(sheet, seed).data);
+}
+
+}  // namespace welkin::scene

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thin layers of cloud: a pattern of noise on a surface above the eye, for skies that must be drawn in no
+// time. The surfaces are those of G. Tarantilis 2004, "Simulating Clouds with Procedural Texturing Techniques
+// Using the GPU" (plane, dome) and K. Pallister, "Generating Procedural Clouds Using 3D Hardware" (sky
+// plane).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "welkin/core/image.h"
+#include "welkin/core/params.h"
+#include "welkin/field/condensation.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::scene {
+
+enum class SheetSurface {
+  kPlane,     // a flat square that follows the eye and fades out at its rim
+  kSkyPlane,  // the same bent down over the earth: reaches the horizon
+  kDome,      // a dome about the eye that cuts through a volume of noise
+};
+
+// How a sheet is lit, the cheapest first.
+enum class SheetTier {
+  kFlat,      // one light for all of it
+  kEmbossed,  // bright where the pattern falls off towards the sun
+  kLit,       // by its optical depth towards the sun
+};
+
+struct Sheet {
+  SheetSurface surface = SheetSurface::kSkyPlane;
+  SheetTier tier = SheetTier::kLit;
+  double heightM = 1400.0;     // above the ground
+  double thicknessM = 300.0;   // over which its optical depth is spread
+  double tileM = 12000.0;      // after which the pattern repeats
+  std::int64_t texels = 512;   // of the pattern, a side
+  std::int64_t frequency = 6;  // cells of the first octave in a tile
+  std::int64_t octaves = 8;
+  double amplitude = 0.7;
+  double persistence = 0.5;
+  double cutoff = 0.6;          // of the pattern in [0, 1]
+  std::optional<double> oktas;  // wins over cutoff: the cutoff at which so much of the sky is hidden
+  double density = 0.96;  // a texture level lets this share of the light through that the one below it does
+  double bias = 1.0;      // the most that the sheet hides
+  double windFromDeg = 270.0;
+  double windSpeedMps = 8.0;
+  double riseMps = 0.0;  // of the pattern through a dome: how fast its clouds form and go
+
+  bool operator==(const Sheet&) const = default;
+};
+void describe(Sheet& s, ParamVisitor& v);
+void validate(const Sheet& s);  // throws ParameterError
+
+// The thesis's layers over its textures of 1024 texels, and its dome of 128.
+enum class SheetPreset { kThesisOvercast, kThesisBroken, kThesisFew, kThesisDome };
+Sheet sheetOf(SheetPreset preset);
+
+// A layer of weather as a sheet on this surface: its height, cover, optical depth, wind, and cells as large
+// as its genus has them.
+Sheet sheetOf(const weather::Layer& layer, SheetSurface surface);
+
+// The pattern, in [0, 1]: texels x texels, or for a dome a volume of texels a side, one channel. Tiles.
+// `seed`: one pattern for each.
+Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed);
+Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed);
+
+// The law by which a pattern of these values becomes cloud, its threshold such that `oktas` of it are cloud
+// (of an optical depth of 0.3 or more, as observers count) where the sheet asks for that.
+field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern);
+
+// The share of the whole pattern that is cloud to an observer: what it covers of the sky, but for chance.
+double deliveredCover(const Sheet& sheet, std::uint64_t seed);
+
+}  // namespace welkin::scene
+
+namespace welkin {
+template <>
+inline constexpr auto kEnumNames<scene::SheetSurface> =
+    std::array<std::string_view, 3>{"plane", "skyplane", "dome"};
+template <>
+inline constexpr auto kEnumNames<scene::SheetTier> =
+    std::array<std::string_view, 3>{"flat", "embossed", "lit"};
+}  // namespace welkin
