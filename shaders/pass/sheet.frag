@@ -11,57 +11,54 @@ uniform vec3 uKeyDirection;
 #include "lib/sheet.glsl"
 
 uniform Sheet uSheet;
-uniform vec3 uSunStep;    // towards the sun in the pattern: to the embossing's neighbour, or to the far end of the way through the sheet
-uniform float uEmboss;    // how steep a slope is wholly sunny or shady, per unit of pattern
-uniform float uScale;     // written value for each cd/m2
+uniform vec3 uSunStep;    // towards the sun in the pattern: embossed, so long that a slope of 1/2 is wholly sunny; lit, to where light leaves the sheet
 #if WELKIN_PATTERN_3D
 uniform sampler3D uPattern;
-#define WELKIN_COORDINATE(v) (v)
+#define WELKIN_COORDINATE(v) vec3(v)
 #else
 uniform sampler2D uPattern;
 #define WELKIN_COORDINATE(v) vec2(v)
 #endif
 
-in vec3 vCoordinate;
-in vec4 vInscatter;
-#if WELKIN_TIER == 2
+in vec4 vCoordinate;      // of the pattern; w: the most that is hidden here
+#if WELKIN_TIER == 0
+in vec3 vLight;
+#elif WELKIN_TIER == 1
+in vec3 vShade;
+in vec3 vGain;
+#else
+in vec3 vInscatter;
 in vec3 vKey;
 in vec3 vAround;
-in vec3 vDirection;
-#else
-in vec3 vShade;
-in vec3 vSunny;
+in vec4 vDirection;       // w: level of the pattern's mipmaps for the way to the sun
 #endif
 
 layout(location = 0) out vec4 outColor;
 
 void main() {
-  float pattern = texture(uPattern, WELKIN_COORDINATE(vCoordinate)).x;
-  float depth = sheetDepth(uSheet, pattern);
-  float alpha = sheetOpacity(uSheet, depth) * vInscatter.w;
+  vec4 texel = texture(uPattern, WELKIN_COORDINATE(vCoordinate));
+  float depth = sheetDepth(uSheet, texel.x);
+  float alpha = vCoordinate.w - vCoordinate.w * exp(-depth);
 #if WELKIN_TIER == 0
-  vec3 light = mix(vSunny, vShade, 0.5);
+  vec3 light = vLight;
 #elif WELKIN_TIER == 1
-  // The sheet's side that falls off towards the sun is its sunny side.
-  float slope = pattern - texture(uPattern, WELKIN_COORDINATE(vCoordinate + uSunStep)).x;
-  vec3 light = mix(vShade, vSunny, clamp(0.5 + uEmboss * slope, 0.0, 1.0));
+  // The sheet's side that falls off towards the sun is its sunny side. The texels hold the slopes.
+  float sunny = clamp(0.5 - dot(WELKIN_COORDINATE(texel.yzw), WELKIN_COORDINATE(uSunStep)), 0.0, 1.0);
+  vec3 light = vShade + sunny * vGain;
 #else
-  // Depth on the way to the sun, which rises through the sheet while it crosses the pattern.
-  const int kSteps = 4;
-  float toSun = 0.0;
-  float weights = 0.0;
-  for (int i = 0; i < kSteps; ++i) {
-    float x = (float(i) + 0.5) / float(kSteps);
-    float above = 1.0 - x * x;  // share of the sheet's thickness still above the way
-    toSun += above * sheetDepth(uSheet, texture(uPattern, WELKIN_COORDINATE(vCoordinate + uSunStep * (x * x))).x);
-    weights += above;
-  }
+  // Depth on the way to the sun, which rises through the sheet while it crosses the pattern: at 1/6, 1/2 and 5/6 of it, squared, weighted
+  // by what of the sheet's thickness is still above.
+  float level = floor(vDirection.w);
+  float toSun = 0.45 * sheetDepth(uSheet, textureLod(uPattern, WELKIN_COORDINATE(vCoordinate.xyz + 0.028 * uSunStep), level).x) +
+                0.36 * sheetDepth(uSheet, textureLod(uPattern, WELKIN_COORDINATE(vCoordinate.xyz + 0.25 * uSunStep), level).x) +
+                0.19 * sheetDepth(uSheet, textureLod(uPattern, WELKIN_COORDINATE(vCoordinate.xyz + 0.694 * uSunStep), level).x);
   float sine = max(abs(uKeyDirection.z), 0.05);
-  toSun *= 0.5 / (weights * sine);
-  vec3 dir = normalize(vDirection);
+  toSun *= 0.5 / sine;
+  vec3 dir = normalize(vDirection.xyz);
   float cosSun = dot(dir, uKeyDirection);
   CloudDepths d = CloudDepths(toSun, 0.5 * depth / sine, 0.5 * depth, 0.5 * depth);
-  vec3 light = vKey * cloudSunSource(d, phaseDroplet(cosSun, uDroplets), cosSun, dir.z, max(uKeyDirection.z, 0.0)) + vAround;
+  vec3 light = vKey * cloudSunSource(d, phaseDroplet(cosSun, uDroplets), cosSun, dir.z, max(uKeyDirection.z, 0.0)) + vAround +
+               vInscatter;
 #endif
-  outColor = vec4((light + vInscatter.xyz) * (alpha * uScale), alpha);
+  outColor = vec4(light, 1.0) * alpha;
 }

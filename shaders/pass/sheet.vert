@@ -13,17 +13,22 @@ layout(location = 1) in float iAlpha;     // 0 at the rim
 
 uniform mat4 uClipFromEnu;                // directions east-north-up from the eye to clip space
 uniform Sheet uSheet;
+uniform float uScale;                     // written value for each cd/m2
 uniform DropletPhase uDroplets;
 
-out vec3 vCoordinate;                     // of the pattern
-out vec4 vInscatter;                      // by the air in front, cd/m2; w: the mesh's alpha
-#if WELKIN_TIER == 2
+uniform float uTexelsPerPixel;            // of the pattern, seen square on at a distance of 1 m
+
+out vec4 vCoordinate;                     // of the pattern; w: the most that is hidden here
+#if WELKIN_TIER == 0
+out vec3 vLight;                          // luminance of cloud as it arrives, with what the air in front adds, cd/m2
+#elif WELKIN_TIER == 1
+out vec3 vShade;                          // the same of the shady side
+out vec3 vGain;                           // sunny over shady
+#else
+out vec3 vInscatter;                      // by the air in front, cd/m2
 out vec3 vKey;                            // illuminance of the sheet that arrives at the eye's side of the air, lux
 out vec3 vAround;                         // radiance from all other directions, as it arrives
-out vec3 vDirection;                      // from the eye; not normalised
-#else
-out vec3 vShade;                          // luminance of the shady and of the sunny side as they arrive, cd/m2
-out vec3 vSunny;
+out vec4 vDirection;                      // from the eye; not normalised; w: level of the pattern's mipmaps
 #endif
 
 // Luminance of cloud at an optical depth towards the sun.
@@ -39,23 +44,31 @@ void main() {
   vec4 clip = uClipFromEnu * vec4(p, 1.0);
   gl_Position = vec4(clip.xy, clip.w, clip.w);  // as far as can be: behind all that an engine draws
 
-  vCoordinate = sheetCoordinate(uSheet, iPositionM);
+  vCoordinate = vec4(sheetCoordinate(uSheet, iPositionM), uSheet.bias * iAlpha);
   vec3 inscatter, through;
   aerial(dir, distanceM, inscatter, through);
-  vInscatter = vec4(inscatter, iAlpha);
+  inscatter *= uScale;
+  through *= uScale;
 
   CloudDepths d = CloudDepths(0.0, 0.0, 0.5 * uSheet.typicalDepth, 0.5 * uSheet.typicalDepth);
   vec2 shares = cloudSkyShares(d);
   vec3 around = (skyAbove(uSheet.heightM) * shares.x + uGroundLight * shares.y) * through;
   vec3 key = keyLightAt(uSheet.heightM, iPositionM) * through;
 #if WELKIN_TIER == 2
+  vInscatter = inscatter;
   vKey = key;
   vAround = around;
-  vDirection = p;
+  vDirection = vec4(p, log2(max(uTexelsPerPixel * distanceM, 1.0)));
 #else
   float cosSun = dot(dir, uKeyDirection);
   float phase = phaseDroplet(cosSun, uDroplets);
-  vSunny = sheetLight(0.1 * uSheet.typicalDepth, key, around, phase, cosSun, dir.z);
-  vShade = sheetLight(uSheet.typicalDepth, key, around, phase, cosSun, dir.z);
+  vec3 sunny = sheetLight(0.1 * uSheet.typicalDepth, key, around, phase, cosSun, dir.z) + inscatter;
+  vec3 shade = sheetLight(uSheet.typicalDepth, key, around, phase, cosSun, dir.z) + inscatter;
+#if WELKIN_TIER == 0
+  vLight = 0.5 * (sunny + shade);
+#else
+  vShade = shade;
+  vGain = sunny - shade;
+#endif
 #endif
 }

@@ -45,15 +45,18 @@ LiveSheet makeSheet(const scene::Sheet& sheet, std::uint64_t seed, double earthR
                                         .wrapZ = gpu::Wrap::kRepeat};
   LiveSheet live;
   live.sheet = sheet;
+  const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
+  gpu::TextureOptions options = kTiling;
+  if (slopes) options.format = gpu::Format::kRgba16F;
   if (sheet.surface == scene::SheetSurface::kDome) {
     const Volume<float> pattern = scene::domePattern(sheet, seed);
     live.matter = shading::matterOf(sheet, pattern.data, seed);
-    live.volume = gpu::Texture3D(pattern, kTiling);
+    live.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
     live.volume.makeMipmaps();
   } else {
     const Image<float> pattern = scene::flatPattern(sheet, seed);
     live.matter = shading::matterOf(sheet, pattern.data, seed);
-    live.flat = gpu::Texture2D(pattern, kTiling);
+    live.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern) : pattern, options);
     live.flat.makeMipmaps();
   }
   const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);
@@ -82,7 +85,7 @@ struct LiveSky::Impl {
                  float scale);
   shading::SheetLook look(const LiveSheet& sheet, const shading::ViewParts& view) const {
     return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
-                           state->lights[0].direction);
+                           state->lights[0].direction, view.pixelRad);
   }
 };
 

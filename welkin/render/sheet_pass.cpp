@@ -60,7 +60,7 @@ void SheetPass::draw(const SheetDraw& sheet, const shading::ViewParts& view, con
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uClipFromEnu", view.clipFromEnu);
   p.set("uSunStep", sheet.look.sunStep);
-  p.set("uEmboss", sheet.look.emboss);
+  p.set("uTexelsPerPixel", sheet.look.texelsPerPixel);
   p.set("uScale", scale);
   tables.bind(p);
   p.bind("uPattern", *sheet.pattern);

@@ -14,7 +14,8 @@
 
 namespace welkin::render {
 
-// A sheet ready to be drawn. The pattern is a Texture2D, or a Texture3D for domes.
+// A sheet ready to be drawn. The pattern is a Texture2D, or a Texture3D for domes: its value, and for
+// embossed sheets the differences across a texel along the axes in the other channels.
 struct SheetDraw {
   const gpu::Mesh* mesh;
   const gpu::Texture* pattern;

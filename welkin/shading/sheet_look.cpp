@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
 
@@ -28,7 +29,7 @@ SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, 
 }
 
 SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double secondsAfter,
-                 const glm::dvec3& eyeM, const glm::vec3& toLight) {
+                 const glm::dvec3& eyeM, const glm::vec3& toLight, float pixelRad) {
   const bool volume = sheet.surface == scene::SheetSurface::kDome;
   const double towards = radians(sheet.windFromDeg + 180.0), moved = sheet.windSpeedMps * secondsAfter;
   const glm::dvec3 shift(eyeM.x - moved * std::sin(towards), eyeM.y - moved * std::cos(towards),
@@ -42,22 +43,52 @@ SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double se
   look.heightM = static_cast<float>(sheet.heightM);
   look.thicknessM = static_cast<float>(sheet.thicknessM);
   look.typicalDepth = matter.typicalDepth;
+  look.texelsPerPixel = pixelRad * static_cast<float>(static_cast<double>(sheet.texels) / sheet.tileM);
 
   const glm::vec2 level(toLight);
   const float n = glm::length(level);
   const glm::vec3 direction = n > 1e-4f ? glm::vec3(level / n, 0.0f) : glm::vec3(0.0f);
   if (sheet.tier == scene::SheetTier::kEmbossed) {
-    // Two texels on; a slope of a typical depth over that way is wholly sunny.
-    look.sunStep = direction * (2.0f / static_cast<float>(sheet.texels));
-    look.emboss = 0.25f * look.steepness / look.typicalDepth * static_cast<float>(sheet.texels) /
-                  (2.0f * static_cast<float>(sheet.frequency));
-    look.emboss = std::clamp(look.emboss, 1.0f, 60.0f);
+    // A slope by which the sheet gains its typical depth over a third of a cell is wholly sunny.
+    const float texelsPerCell = static_cast<float>(sheet.texels) / static_cast<float>(sheet.frequency);
+    look.sunStep =
+        direction * std::clamp(0.08f * look.steepness / look.typicalDepth * texelsPerCell, 1.0f, 60.0f);
   } else if (sheet.tier == scene::SheetTier::kLit) {
     // As far as the light runs through the sheet; low light comes from afar, but not from another cloud.
     const float slant = std::min(n / std::max(std::abs(toLight.z), 0.02f), 6.0f);
     look.sunStep = direction * (slant * look.thicknessM / static_cast<float>(sheet.tileM));
   }
   return look;
+}
+
+Image<float> withSlopes(const Image<float>& pattern) {
+  const int w = pattern.width, h = pattern.height;
+  Image<float> out(w, h, 4);
+  parallelFor(static_cast<std::size_t>(h), 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < w; ++x) {
+        out.at(x, y, 0) = pattern.at(x, y);
+        out.at(x, y, 1) = pattern.at((x + 1) % w, y) - pattern.at((x + w - 1) % w, y);
+        out.at(x, y, 2) = pattern.at(x, (y + 1) % h) - pattern.at(x, (y + h - 1) % h);
+      }
+  });
+  return out;
+}
+
+Volume<float> withSlopes(const Volume<float>& pattern) {
+  const int nx = pattern.nx, ny = pattern.ny, nz = pattern.nz;
+  Volume<float> out(nx, ny, nz, 4);
+  parallelFor(static_cast<std::size_t>(nz), 2, [&](std::size_t begin, std::size_t end) {
+    for (int z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
+      for (int y = 0; y < ny; ++y)
+        for (int x = 0; x < nx; ++x) {
+          out.at(x, y, z, 0) = pattern.at(x, y, z);
+          out.at(x, y, z, 1) = pattern.at((x + 1) % nx, y, z) - pattern.at((x + nx - 1) % nx, y, z);
+          out.at(x, y, z, 2) = pattern.at(x, (y + 1) % ny, z) - pattern.at(x, (y + ny - 1) % ny, z);
+          out.at(x, y, z, 3) = pattern.at(x, y, (z + 1) % nz) - pattern.at(x, y, (z + nz - 1) % nz);
+        }
+  });
+  return out;
 }
 
 }  // namespace welkin::shading

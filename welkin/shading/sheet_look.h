@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "welkin/core/image.h"
 #include "welkin/field/condensation.h"
 #include "welkin/scene/sheet.h"
 
@@ -15,8 +16,8 @@ struct SheetLook {
   glm::vec3 offset{0.0f}, perM{0.0f};
   float threshold = 0.0f, steepness = 1.0f, bias = 1.0f, heightM = 0.0f, thicknessM = 1.0f,
         typicalDepth = 1.0f;
-  glm::vec3 sunStep{0.0f};  // towards the light in the pattern
-  float emboss = 1.0f;      // slope that is wholly sunny or shady
+  glm::vec3 sunStep{0.0f};      // uSunStep of pass/sheet.frag
+  float texelsPerPixel = 1.0f;  // at 1 m
 };
 
 // What of it does not change with time: the law and the mean depth of its cloud.
@@ -27,8 +28,14 @@ struct SheetMatter {
 };
 SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, std::uint64_t seed);
 
-// secondsAfter: the scene's time; eyeM: in the world, east-north-up; toLight: unit.
+// secondsAfter: the scene's time; eyeM: in the world, east-north-up; toLight: unit;
+// pixelRad: angle of a pixel.
 SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double secondsAfter,
-                 const glm::dvec3& eyeM, const glm::vec3& toLight);
+                 const glm::dvec3& eyeM, const glm::vec3& toLight, float pixelRad);
+
+// A tiling pattern with its slopes beside it, for embossing: four channels, the value and the differences of
+// the neighbours along x, y and z (0 in a picture).
+Image<float> withSlopes(const Image<float>& pattern);
+Volume<float> withSlopes(const Volume<float>& pattern);
 
 }  // namespace welkin::shading

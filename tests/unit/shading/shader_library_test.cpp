@@ -162,6 +162,9 @@ ShaderDefines definesOfLayers(int count) {
   }
   ShaderDefines defines = marchDefines(layout, 1200.0);
   defines.push_back({"WELKIN_BAND", "0"});
+  // Sheets in all tiers of light, on either kind of pattern.
+  defines.push_back({"WELKIN_TIER", std::to_string(count % 3)});
+  defines.push_back({"WELKIN_PATTERN_3D", count % 2 ? "1" : "0"});
   return defines;
 }
 
@@ -174,13 +177,18 @@ TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
     const ShaderSource triangle = assembleShader("pass/fullscreen.vert", dialect);
     const ShaderSource nothing{
         std::string(es ? "#version 300 es" : "#version 330 core") + "\nvoid main() {}\n", {"-"}};
-    for (const std::string& name : shaderNames())
-      for (const int layers : {0, 1, field::kMaxLayers}) {
+    const std::vector<std::string> names = shaderNames();
+    for (const std::string& name : names)
+      for (const int layers : {0, 1, 2, field::kMaxLayers}) {
         SCOPED_TRACE(name + " with " + std::to_string(layers) + " layers" +
                      (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
         const ShaderDefines defines = definesOfLayers(layers);
         if (name.ends_with(".frag")) {
-          EXPECT_NO_THROW(gpu::Program::graphics(triangle, assembleShader(name, dialect, defines)));
+          // Its own vertices, where it has some.
+          const std::string vertices = name.substr(0, name.size() - 4) + "vert";
+          const bool own = std::ranges::find(names, vertices) != names.end();
+          EXPECT_NO_THROW(gpu::Program::graphics(own ? assembleShader(vertices, dialect, defines) : triangle,
+                                                 assembleShader(name, dialect, defines)));
         } else if (name.ends_with(".vert")) {
           EXPECT_NO_THROW(gpu::Program::graphics(assembleShader(name, dialect, defines), nothing));
         } else if (name.ends_with(".comp") && !es && context.hasCompute()) {

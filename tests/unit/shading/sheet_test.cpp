@@ -103,7 +103,7 @@ SheetLook lookAt(double heightM, double seconds, glm::dvec3 eye = glm::dvec3(0.0
   sheet.windFromDeg = 270.0;
   SheetMatter matter;
   matter.origin = {0.5, 0.5, 0.5};
-  return lookOf(sheet, matter, seconds, eye, glm::vec3(0.6f, 0.0f, 0.8f));
+  return lookOf(sheet, matter, seconds, eye, glm::vec3(0.6f, 0.0f, 0.8f), 0.001f);
 }
 
 // What stands over a place stays over it while the eye moves, and goes with the wind.
