@@ -198,10 +198,10 @@ class MipChain::Level {
   std::unique_ptr<Level> next_;
 };
 
-MipChain::MipChain(const TexelShape& top, MipFilter filter, MipEdges edges, Emit emit) : top_(top) {
+MipChain::MipChain(const TexelShape& top, MipFilter filter, MipEdges edges, const Emit& emit) : top_(top) {
   TexelShape runs = top;
   if (!top.volume) std::swap(runs.ny, runs.nz);
-  if (mipShapes(top).size() > 1) first_ = std::make_unique<Level>(1, runs, filter, edges, std::move(emit));
+  if (mipShapes(top).size() > 1) first_ = std::make_unique<Level>(1, runs, filter, edges, emit);
   floats_.resize(runs.sliceBytes() / bytesOf(top.format.type));
 }
 

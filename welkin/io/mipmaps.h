@@ -47,7 +47,7 @@ class MipChain {
   // level come in order, but with kRepeat the first ones, which need the last texels, come last.
   using Emit = std::function<void(int level, int run, std::span<const std::byte> texels)>;
   // kBox or kKaiser.
-  MipChain(const TexelShape& top, MipFilter filter, MipEdges edges, Emit emit);
+  MipChain(const TexelShape& top, MipFilter filter, MipEdges edges, const Emit& emit);
   ~MipChain();
 
   // The next run of the full level. With the last one everything has been emitted.

@@ -161,6 +161,7 @@ template <class T>
 bool readRows(png_structp png, png_infop info, const Picture& picture, PngImage& out) {
   Image<T> image(picture.width, picture.height, picture.channels);
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(&image.data[image.index(0, y)]));
   if (!decodeRows(png, info, rows.data())) return false;

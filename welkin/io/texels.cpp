@@ -35,9 +35,9 @@ void integersToFloats(const std::byte* values, std::span<float> floats) {
 
 template <class T>
 void floatsToIntegers(std::span<const float> floats, std::byte* values) {
-  constexpr float kOne = std::numeric_limits<T>::max();
+  constexpr float kOne = std::numeric_limits<T>::max(), kHalfUp = 0.5f;  // as lround, which is slow
   for (std::size_t i = 0; i < floats.size(); ++i) {
-    const T x = static_cast<T>(inside(floats[i], 0.0f, 1.0f) * kOne + 0.5f);
+    const T x = static_cast<T>(inside(floats[i], 0.0f, 1.0f) * kOne + kHalfUp);
     std::memcpy(values + i * sizeof(T), &x, sizeof x);
   }
 }
@@ -77,7 +77,7 @@ void validate(const TexelShape& shape) {
 }
 
 void toFloats(ValueType type, std::span<const std::byte> values, std::span<float> floats) {
-  assert(values.size() == floats.size() * bytesOf(type));
+  assert(values.size() == floats.size() * TexelFormat{.type = type}.valueBytes());
   switch (type) {
     case ValueType::kUnorm8:
       return integersToFloats<std::uint8_t>(values.data(), floats);
@@ -96,7 +96,7 @@ void toFloats(ValueType type, std::span<const std::byte> values, std::span<float
 }
 
 void fromFloats(std::span<const float> floats, ValueType type, std::span<std::byte> values) {
-  assert(values.size() == floats.size() * bytesOf(type));
+  assert(values.size() == floats.size() * TexelFormat{.type = type}.valueBytes());
   switch (type) {
     case ValueType::kUnorm8:
       return floatsToIntegers<std::uint8_t>(floats, values.data());
@@ -115,7 +115,7 @@ void fromFloats(std::span<const float> floats, ValueType type, std::span<std::by
 
 float Texels::value(int x, int y, int z, int c) const {
   assert(x >= 0 && x < shape.nx && y >= 0 && y < shape.ny && z >= 0 && z < shape.nz && c >= 0 &&
-         c < countOf(shape.format.channels));
+         c < shape.format.channelCount());
   const std::size_t at = shape.sliceBytes() * static_cast<std::size_t>(z) +
                          shape.rowBytes() * static_cast<std::size_t>(y) +
                          shape.texelBytes() * static_cast<std::size_t>(x) +

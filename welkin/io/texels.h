@@ -38,6 +38,8 @@ constexpr std::size_t bytesOf(ValueType type) {
 struct TexelFormat {
   Channels channels = Channels::kL;
   ValueType type = ValueType::kUnorm8;
+  constexpr int channelCount() const { return countOf(channels); }
+  constexpr std::size_t valueBytes() const { return bytesOf(type); }
   bool operator==(const TexelFormat&) const = default;
 };
 
@@ -52,7 +54,7 @@ struct TexelShape {
   bool volume = false;         // a volume may have one slice; a picture always has
 
   std::size_t texelBytes() const {
-    return bytesOf(format.type) * static_cast<std::size_t>(countOf(format.channels));
+    return format.valueBytes() * static_cast<std::size_t>(format.channelCount());
   }
   std::size_t rowBytes() const { return texelBytes() * static_cast<std::size_t>(nx); }
   std::size_t sliceBytes() const { return rowBytes() * static_cast<std::size_t>(ny); }
@@ -83,12 +85,12 @@ struct Texels {
   // The values as numbers of their own size: uint8_t, uint16_t (also for the bits of halves) or float.
   template <class T>
   std::span<T> as() {
-    assert(sizeof(T) == bytesOf(shape.format.type));
+    assert(sizeof(T) == shape.format.valueBytes());
     return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
   template <class T>
   std::span<const T> as() const {
-    assert(sizeof(T) == bytesOf(shape.format.type));
+    assert(sizeof(T) == shape.format.valueBytes());
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
   std::span<const std::byte> slice(int z) const {
@@ -114,14 +116,14 @@ void requireFinite(const Texels& texels, const std::filesystem::path& path, std:
 // picture's.
 template <class T>
 Texels toTexels(const Image<T>& image, TexelFormat format) {
-  assert(sizeof(T) == bytesOf(format.type) && image.channels == countOf(format.channels));
+  assert(sizeof(T) == format.valueBytes() && image.channels == format.channelCount());
   Texels texels(TexelShape{format, image.width, image.height, 1, false});
   std::memcpy(texels.bytes.data(), image.data.data(), texels.bytes.size());
   return texels;
 }
 template <class T>
 Texels toTexels(const Volume<T>& volume, TexelFormat format) {
-  assert(sizeof(T) == bytesOf(format.type) && volume.channels == countOf(format.channels));
+  assert(sizeof(T) == format.valueBytes() && volume.channels == format.channelCount());
   Texels texels(TexelShape{format, volume.nx, volume.ny, volume.nz, true});
   std::memcpy(texels.bytes.data(), volume.data.data(), texels.bytes.size());
   return texels;

@@ -9,7 +9,7 @@
 #include "welkin/io/texel_file.h"
 #include "welkin/io/vdb.h"
 
-// The sanitizers keep terabytes of address space for themselves.
+// The sanitizers keep terabytes of address space for themselves, and are slow: they see some of the files.
 #ifdef __has_feature
 #define WELKIN_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
 #else
@@ -65,7 +65,8 @@ class UntrustedFiles : public Scratch {
 TEST_F(UntrustedFiles, CutShortAtEveryByte) {
   for (const auto& [name, good] : smallFiles()) {
     ASSERT_TRUE(reads(folder / name, good)) << name;
-    for (std::size_t n = 0; n < good.size(); ++n)
+    const bool large = name.ends_with(".vdb");
+    for (std::size_t n = 0; n < good.size(); n += large && WELKIN_SANITIZED ? 13 : 1)
       EXPECT_FALSE(reads(folder / name, good.substr(0, n))) << name << " of " << n << " bytes";
   }
 }
@@ -76,6 +77,7 @@ TEST_F(UntrustedFiles, EveryByteChanged) {
       // A VDB is mostly masks that are zero: some of those.
       if (name.ends_with(".vdb") && good[at] == '\0' && at % 61 != 0) continue;
       for (const int change : {0xff, 0x80, 0x01}) {
+        if (WELKIN_SANITIZED && change == 0x01) continue;
         std::string bad = good;
         bad[at] = static_cast<char>(bad[at] ^ change);
         reads(folder / name, bad);
