@@ -18,6 +18,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "welkin/noise/fill.h"
@@ -41,6 +43,7 @@ class CellTiles {
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
     for (auto& q : near_) q = scratch.take<float>(most);
     away_ = scratch.take<float>(most);
+    runs_ = scratch.take<Run>(most / static_cast<std::size_t>(lanes_) + 1);
   }
 
   // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
@@ -51,6 +54,7 @@ class CellTiles {
     weight_ = weight;
     bias_ = bias;
     add_ = add;
+    if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
     for (int z = 0; z < block_.slices; z += tz)
       for (int y = 0; y < block_.rows; y += ty)
@@ -147,6 +151,12 @@ class CellTiles {
     return {p.cell[begin] - origin_[a], cells, p.inside[begin], static_cast<float>(cells) + p.inside[end]};
   }
 
+  // A vector of points in one row of cells.
+  struct Run {
+    std::size_t from;  // in points_
+    int cell[3];       // of its first, relative to the tile's first
+  };
+
   void findNear(int x, int y, int z, bool second) {
     const bool solid = tables_.lattice->axes() == 3;
     box_[0] = extent(0, x, kTileX);
@@ -172,7 +182,7 @@ class CellTiles {
     const int across = box_[0].cells + 1 + 2 * reach;
     const auto zero = hn::Zero(d), far = hn::Set(d, kFar);
     auto first = far, next = far;  // least and second least of the greatest distances' squares, by lane
-    std::size_t n = 0;
+    std::size_t runs = 0;
     for (int k = -deep; k <= box_[2].cells + deep; ++k)
       for (int j = -reach; j <= box_[1].cells + reach; ++j) {
         const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
@@ -188,8 +198,8 @@ class CellTiles {
           if (solid) addAxis(2, from, k, nearest, farthest);
           next = hn::Min(next, hn::Max(first, farthest));
           first = hn::Min(first, farthest);
-          hn::StoreU(nearest, d, away_ + n);
-          n += static_cast<std::size_t>(lanes_);
+          hn::StoreU(nearest, d, away_ + runs * static_cast<std::size_t>(lanes_));
+          runs_[runs++] = {from, {i - reach, j, k}};
         }
       }
     float limit = hn::GetLane(hn::MinOfLanes(d, first));
@@ -202,22 +212,19 @@ class CellTiles {
 
     const auto most = hn::Set(d, limit);
     nearCount_ = 0;
-    n = 0;
-    for (int k = -deep; k <= box_[2].cells + deep; ++k)
-      for (int j = -reach; j <= box_[1].cells + reach; ++j) {
-        const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
-        for (int i = 0; i < across; i += lanes_, n += static_cast<std::size_t>(lanes_)) {
-          const auto keep = hn::Le(hn::LoadU(d, away_ + n), most);
-          if (hn::AllFalse(d, keep)) continue;
-          const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
-          const auto px =
-              hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
-          hn::StoreU(hn::Compress(px, keep), d, near_[0] + nearCount_);
-          keepAxis(1, from, j, keep);
-          if (solid) keepAxis(2, from, k, keep);
-          nearCount_ += static_cast<int>(hn::CountTrue(d, keep));
-        }
+    for (std::size_t v = 0; v < runs; ++v) {
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * static_cast<std::size_t>(lanes_)), most), bits);
+      const Run& run = runs_[v];
+      for (unsigned left = bits[0]; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        const std::size_t from = run.from + static_cast<std::size_t>(lane);
+        near_[0][nearCount_] = points_[0][from] + static_cast<float>(run.cell[0] + lane);
+        near_[1][nearCount_] = points_[1][from] + static_cast<float>(run.cell[1]);
+        if (solid) near_[2][nearCount_] = points_[2][from] + static_cast<float>(run.cell[2]);
+        ++nearCount_;
       }
+    }
     return limit;
   }
 
@@ -234,8 +241,135 @@ class CellTiles {
     nearest = hn::MulAdd(near, near, nearest);
     farthest = hn::MulAdd(far, far, farthest);
   }
-  HWY_INLINE void keepAxis(int a, std::size_t from, int cell, hn::Mask<D> keep) {
-    hn::StoreU(hn::Compress(placeOn(a, from, cell), keep), D(), near_[a] + nearCount_);
+  // Samples at least an eighth of a cell apart: a vector spans a cell or more, and boxes leave too many
+  // points. Every lane looks at the 27 (9) cells around its own. What the lanes see of these is gathered once
+  // for all rows in one cell, and the distances in x and y once for all slices.
+  void fillDense() {
+    const DI di;
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    const CellPlaces& px = axis(0);
+    HWY_ALIGN std::int32_t lane[kTileX];
+    for (int x = 0; x < block_.width; x += lanes_) {
+      const std::int32_t* cell = px.cell + block_.x + x;
+      hn::Store(hn::Sub(hn::LoadU(di, cell), hn::Set(di, cell[0])), di, lane);
+      const auto ux = hn::LoadU(d, px.inside + block_.x + x);
+      for (int z = 0, z1 = 0; z < block_.slices; z = z1) {
+        z1 = solid ? sameCell(2, z) : 1;
+        for (int y = 0, y1 = 0; y < block_.rows; y = y1) {
+          y1 = sameCell(1, y);
+          gatherAround(cell[0] - origin_[0], lane, axis(1).cell[block_.y + y] - origin_[1],
+                       solid ? axis(2).cell[block_.z + z] - origin_[2] : 0, ux);
+          for (int r = y; r < y1; ++r) fillRows(x, r, z, z1);
+        }
+      }
+    }
+  }
+
+  // The end of the run of samples in one cell that begins with sample i.
+  int sameCell(int a, int i) const {
+    const std::int32_t* cell = axis(a).cell + first(a);
+    int end = i + 1;
+    while (end < samples(a) && cell[end] == cell[i]) ++end;
+    return end;
+  }
+
+  void gatherAround(int cellX, const std::int32_t* lane, int cellY, int cellZ, V ux) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    const bool near =
+        lane[lanes_ - 1] + 2 < lanes_;  // one vector holds all points that the lanes see in a row
+    around_ = 0;
+    for (int k = solid ? -1 : 0; k <= (solid ? 1 : 0); ++k)
+      for (int j = -1; j <= 1; ++j) {
+        const std::size_t at = rowAt(cellY + j, cellZ + k) + static_cast<std::size_t>(cellX);
+        for (int i = -1; i <= 1; ++i, ++around_) {
+          V p[3];
+          for (int a = 0; a < tables_.lattice->axes(); ++a) {
+            if (near) {
+              HWY_ALIGN std::int32_t index[kTileX];
+              for (int l = 0; l < lanes_; ++l) index[l] = lane[l] + i + 1;
+              p[a] = hn::TableLookupLanes(hn::LoadU(d, points_[a] + at - 1), hn::SetTableIndices(d, index));
+            } else {
+              HWY_ALIGN float value[kTileX];
+              for (int l = 0; l < lanes_; ++l)
+                value[l] = points_[a][at + static_cast<std::size_t>(lane[l]) + i];
+              p[a] = hn::Load(d, value);
+            }
+          }
+          const auto dx = hn::Sub(hn::Add(p[0], hn::Set(d, static_cast<float>(i))), ux);
+          hn::Store(hn::Mul(dx, dx), d, aroundX_ + around_ * lanes_);
+          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, aroundY_ + around_ * lanes_);
+          if (solid)
+            hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, aroundZ_ + around_ * lanes_);
+        }
+      }
+  }
+
+  // Row r of the slices z to z1, which lie in one cell.
+  HWY_INLINE void fillRows(int x, int r, int z, int z1) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float flat[27 * kTileX];  // squares of the distances in x and y
+    const auto uy = hn::Set(d, axis(1).inside[block_.y + r]);
+    auto least = hn::Set(d, kFar);
+    for (int q = 0; q < around_; ++q) {
+      const auto dy = hn::Sub(hn::Load(d, aroundY_ + q * lanes_), uy);
+      const auto square = hn::MulAdd(dy, dy, hn::Load(d, aroundX_ + q * lanes_));
+      least = hn::Min(least, square);
+      hn::Store(square, d, flat + q * lanes_);
+    }
+    for (int s = z; s < z1; ++s) {
+      if (solid) {
+        const auto uz = hn::Set(d, axis(2).inside[block_.z + s]);
+        auto other = least = hn::Set(d, kFar);  // two chains
+        for (int q = 0; q < 26; q += 2) {
+          const auto dz0 = hn::Sub(hn::Load(d, aroundZ_ + q * lanes_), uz);
+          const auto dz1 = hn::Sub(hn::Load(d, aroundZ_ + (q + 1) * lanes_), uz);
+          least = hn::Min(least, hn::MulAdd(dz0, dz0, hn::Load(d, flat + q * lanes_)));
+          other = hn::Min(other, hn::MulAdd(dz1, dz1, hn::Load(d, flat + (q + 1) * lanes_)));
+        }
+        const auto dz = hn::Sub(hn::Load(d, aroundZ_ + 26 * lanes_), uz);
+        least = hn::Min(hn::Min(least, other), hn::MulAdd(dz, dz, hn::Load(d, flat + 26 * lanes_)));
+      }
+      auto value = hn::Sqrt(least);
+      // Points beyond the cells around are farther than 1; so, rarely, is the nearest of these.
+      if (!hn::AllTrue(d, hn::Le(least, hn::Set(d, 1.0f)))) value = exactly(x, r, s, value);
+      float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
+      const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
+      hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
+    }
+  }
+
+  // The lanes whose value is above 1, from all points within kCellReach.
+  HWY_NOINLINE V exactly(int x, int r, int s, V values) const {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float value[kTileX];
+    hn::Store(values, d, value);
+    const int deep = solid ? kCellReach : 0;
+    const int at[3] = {block_.x + x, block_.y + r, block_.z + s};
+    for (int l = 0; l < lanes_; ++l) {
+      if (value[l] <= 1.0f) continue;
+      float least = value[l] * value[l];
+      for (int k = -deep; k <= deep; ++k)
+        for (int j = -kCellReach; j <= kCellReach; ++j)
+          for (int i = -kCellReach; i <= kCellReach; ++i) {
+            const int step[3] = {i, j, k};
+            const std::size_t from = rowAt(axis(1).cell[at[1]] - origin_[1] + j,
+                                           solid ? axis(2).cell[at[2]] - origin_[2] + k : 0) +
+                                     static_cast<std::size_t>(axis(0).cell[at[0] + l] - origin_[0] + i);
+            float square = 0.0f;
+            for (int a = 0; a < tables_.lattice->axes(); ++a) {
+              const float away =
+                  points_[a][from] + static_cast<float>(step[a]) - axis(a).inside[at[a] + (a == 0 ? l : 0)];
+              square += away * away;
+            }
+            least = std::min(least, square);
+          }
+      value[l] = std::sqrt(least);
+    }
+    return hn::Load(d, value);
   }
 
   // Place of a sample relative to the tile's first cell.
@@ -293,7 +427,10 @@ class CellTiles {
   Extent box_[3];
   float* near_[3];  // the points that matter in the tile, relative to its first cell
   int nearCount_ = 0;
-  float* away_;  // of each, the square of the distance beside x
+  Run* runs_;
+  float* away_;     // of each, the square of the distance beside x
+  int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
+  HWY_ALIGN float aroundX_[27 * kTileX], aroundY_[27 * kTileX], aroundZ_[27 * kTileX];
   float* out_ = nullptr;
   int outStride_ = 0;
   float weight_ = 1.0f, bias_ = 0.0f;

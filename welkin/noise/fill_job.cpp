@@ -115,6 +115,7 @@ class Tables {
   void addCells(const CellTerm& term, CellTables& out, double scale) {
     out.lattice = &term.lattice;
     out.weight = static_cast<float>(term.weight * scale);
+    out.dense = term.lattice.axis(0).frequency() * job_.grid.spacing.x > 0.126;
     for (int a = 0; a < 3; ++a) {
       out.tile[a] = a == 0 ? kTileX : 1;
       if (a >= term.lattice.axes()) continue;
