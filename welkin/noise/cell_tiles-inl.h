@@ -43,6 +43,9 @@ class CellTiles {
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
     for (auto& q : near_) q = scratch.take<float>(most);
     away_ = scratch.take<float>(most);
+    alongX_ = scratch.take<float>(most * static_cast<std::size_t>(kTileX));
+    alongZ_ = scratch.take<float>(most);
+    for (auto& b : beside_) b = scratch.take<float>(most);
     runs_ = scratch.take<Run>(most / static_cast<std::size_t>(lanes_) + 1);
   }
 
@@ -59,18 +62,11 @@ class CellTiles {
     for (int z = 0; z < block_.slices; z += tz)
       for (int y = 0; y < block_.rows; y += ty)
         for (int x = 0; x < block_.width; x += kTileX) {
-          findNear(x, y, z, feature != Feature::kF1);
-          switch (feature) {
-            case Feature::kF1:
-              fillTile<Feature::kF1>(x, y, z);
-              break;
-            case Feature::kF2:
-              fillTile<Feature::kF2>(x, y, z);
-              break;
-            case Feature::kF2MinusF1:
-              fillTile<Feature::kF2MinusF1>(x, y, z);
-              break;
-          }
+          const float safe = findNear(x, y, z, feature != Feature::kF1);
+          if (fillTile(feature, x, y, z) <= safe) continue;
+          // Some sample's point may be farther than those that were looked at.
+          collect(kCellReach, feature != Feature::kF1);
+          fillTile(feature, x, y, z);
         }
   }
 
@@ -157,7 +153,9 @@ class CellTiles {
     int cell[3];       // of its first, relative to the tile's first
   };
 
-  void findNear(int x, int y, int z, bool second) {
+  // Finds the points that can matter among those in the cells beside the tile's, and returns the square of
+  // the distance within which no others lie; where sums cannot be taken back, all points at once.
+  float findNear(int x, int y, int z, bool second) {
     const bool solid = tables_.lattice->axes() == 3;
     box_[0] = extent(0, x, kTileX);
     box_[1] = extent(1, y, tables_.tile[1]);
@@ -166,15 +164,18 @@ class CellTiles {
     float margin = 1.0f;
     for (int a = 0; a < tables_.lattice->axes(); ++a)
       margin = std::min({margin, box_[a].lo, static_cast<float>(box_[a].cells + 1) - box_[a].hi});
-    const float safe = 1.0f + std::max(margin, 0.0f);
-    const float enough = solid ? 3.0f : 2.0f;  // no sample's second point is farther
-    const float limit = std::min(collect(1, enough, second), enough);
-    if (limit > safe * safe) collect(kCellReach, enough, second);
+    const float safe = (1.0f + std::max(margin, 0.0f)) * (1.0f + std::max(margin, 0.0f));
+    if (collect(1, second) <= safe || !add_) return safe;
+    collect(kCellReach, second);
+    return enough();
   }
+
+  // No sample's second point is farther (square).
+  float enough() const { return tables_.lattice->axes() == 3 ? 3.0f : 2.0f; }
 
   // Collects the points that can matter among those at most `reach` cells from the tile's; returns the square
   // of the distance within which they lie.
-  float collect(int reach, float enough, bool second) {
+  float collect(int reach, bool second) {
     const D d;
     const bool solid = tables_.lattice->axes() == 3;
     const int deep = solid ? reach : 0;
@@ -208,7 +209,7 @@ class CellTiles {
       const auto rest = hn::IfThenElse(hn::Eq(first, hn::Set(d, limit)), next, first);
       limit = hn::GetLane(hn::MinOfLanes(d, rest));
     }
-    limit = std::min(limit, enough) * 1.00001f;
+    limit = std::min(limit, enough()) * 1.00001f;
 
     const auto most = hn::Set(d, limit);
     nearCount_ = 0;
@@ -225,6 +226,9 @@ class CellTiles {
         ++nearCount_;
       }
     }
+    // Far points, so that loops over these may take four at a time.
+    for (; nearCount_ % 4 != 0; ++nearCount_)
+      for (auto& q : near_) q[nearCount_] = kFar;
     return limit;
   }
 
@@ -379,42 +383,84 @@ class CellTiles {
            p.inside[first(a) + sample];
   }
 
+  // The squares of distances along one axis, from the points that matter to a place.
+  HWY_INLINE void squaresOn(int a, float place, const float* plus, float* out) const {
+    const D d;
+    const auto p = hn::Set(d, place);
+    for (int q = 0; q < nearCount_; q += lanes_) {
+      const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
+      hn::Store(plus == nullptr ? hn::Mul(away, away) : hn::MulAdd(away, away, hn::Load(d, plus + q)), d,
+                out + q);
+    }
+  }
+
+  // Returns the square of the greatest distance that decided over a sample.
+  float fillTile(Feature feature, int x, int y, int z) {
+    switch (feature) {
+      case Feature::kF1:
+        return fillTileAs<Feature::kF1>(x, y, z);
+      case Feature::kF2:
+        return fillTileAs<Feature::kF2>(x, y, z);
+      case Feature::kF2MinusF1:
+        break;
+    }
+    return fillTileAs<Feature::kF2MinusF1>(x, y, z);
+  }
+
   template <Feature kFeature>
-  HWY_INLINE void fillTile(int x, int y, int z) {
+  HWY_INLINE float fillTileAs(int x, int y, int z) {
     const D d;
     const DI di;
     const bool solid = tables_.lattice->axes() == 3;
     const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
-    for (int s = z; s < z + tables_.tile[2]; ++s)
-      for (int r = y; r < y + tables_.tile[1]; ++r) {
-        const auto py = hn::Set(d, inTile(1, r, y));
-        const auto pz = hn::Set(d, solid ? inTile(2, s, z) : 0.0f);
-        for (int q = 0; q < nearCount_; q += lanes_) {
-          const auto dy = hn::Sub(hn::LoadU(d, near_[1] + q), py);
-          auto away = hn::Mul(dy, dy);
-          if (solid) {
-            const auto dz = hn::Sub(hn::LoadU(d, near_[2] + q), pz);
-            away = hn::MulAdd(dz, dz, away);
-          }
-          hn::StoreU(away, d, away_ + q);
-        }
-        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
-        for (int i = 0; i < kTileX; i += lanes_) {
-          const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
-          const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
-          auto first = hn::Set(d, kFar), second = first;
-          for (int q = 0; q < nearCount_; ++q) {
-            const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
-            const auto square = hn::MulAdd(dx, dx, hn::Set(d, away_[q]));
-            if constexpr (kFeature != Feature::kF1) second = hn::Min(second, hn::Max(first, square));
-            first = hn::Min(first, square);
-          }
-          auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
-          if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
-          const auto sum = add_ ? hn::LoadU(d, out + i) : hn::Set(d, bias_);
-          hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out + i);
+    auto greatest = hn::Zero(d);
+    for (int i = 0; i < kTileX; i += lanes_) {
+      const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
+      const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
+      for (int q = 0; q < nearCount_; ++q) {
+        const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
+        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * lanes_);
+      }
+      for (int s = z; s < z + tables_.tile[2]; ++s) {
+        if (solid) squaresOn(2, inTile(2, s, z), nullptr, alongZ_);
+        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + y) * outStride_ + x + i;
+        for (int r = 0; r < tables_.tile[1]; r += 2, out += std::ptrdiff_t{2} * outStride_) {
+          // Two rows share the loads; a tile of one row has its only one twice.
+          const int other = r + 1 < tables_.tile[1] ? r + 1 : r;
+          squaresOn(1, inTile(1, y + r, y), solid ? alongZ_ : nullptr, beside_[0]);
+          squaresOn(1, inTile(1, y + other, y), solid ? alongZ_ : nullptr, beside_[1]);
+          auto first0 = hn::Set(d, kFar), second0 = first0, first1 = first0, second1 = first0;
+          for (int q = 0; q < nearCount_; q += 4)
+            for (int k = 0; k < 4; ++k) {
+              const auto dx = hn::Load(d, alongX_ + (q + k) * lanes_);
+              const auto square0 = hn::Add(dx, hn::Set(d, beside_[0][q + k]));
+              const auto square1 = hn::Add(dx, hn::Set(d, beside_[1][q + k]));
+              if constexpr (kFeature != Feature::kF1) {
+                second0 = hn::Min(second0, hn::Max(first0, square0));
+                second1 = hn::Min(second1, hn::Max(first1, square1));
+              }
+              first0 = hn::Min(first0, square0);
+              first1 = hn::Min(first1, square1);
+            }
+          constexpr bool kOne = kFeature == Feature::kF1;
+          greatest = hn::Max(greatest, hn::Max(kOne ? first0 : second0, kOne ? first1 : second1));
+          put<kFeature>(first1, second1, out + static_cast<std::ptrdiff_t>(other - r) * outStride_,
+                        other != r);
+          put<kFeature>(first0, second0, out, true);
         }
       }
+    }
+    return hn::GetLane(hn::MaxOfLanes(d, greatest));
+  }
+
+  template <Feature kFeature>
+  HWY_INLINE void put(V first, V second, float* out, bool wanted) const {
+    const D d;
+    if (!wanted) return;
+    auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+    if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
+    const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
+    hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
   }
 
   static constexpr float kFar = 1e9f;
@@ -428,7 +474,9 @@ class CellTiles {
   float* near_[3];  // the points that matter in the tile, relative to its first cell
   int nearCount_ = 0;
   Run* runs_;
-  float* away_;     // of each, the square of the distance beside x
+  float* alongX_;               // squares of distances: of the points to a vector of samples in x,
+  float *alongZ_, *beside_[2];  // to a slice in z, to two rows in y and z
+  float* away_;                 // of each, the square of the distance beside x
   int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
   HWY_ALIGN float aroundX_[27 * kTileX], aroundY_[27 * kTileX], aroundZ_[27 * kTileX];
   float* out_ = nullptr;

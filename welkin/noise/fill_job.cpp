@@ -159,7 +159,7 @@ class Tables {
   }
 
  private:
-  static constexpr double kTileCells = 0.3;  // of a cell's edge that a tile spans in y and z
+  static constexpr double kTileCells = 0.5;  // of a cell's edge that a tile spans in y and z
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
 
