@@ -82,21 +82,18 @@ void fill(benchmark::State& state, const Workload& w, int across) {
 
 void add(const Workload& w, std::int64_t target, int threads, int across) {
   const std::string set = target == HWY_AVX3 ? "AVX-512" : hwy::TargetName(target);
-  const std::string name =
-      w.name + "/" + set + "/" + std::to_string(threads) + "/" + std::to_string(across);
-  benchmark::RegisterBenchmark(name.c_str(),
-                               [=](benchmark::State& state) {
-                                 hwy::SetSupportedTargetsForTest(target);
-                                 const int before = threadCount();
-                                 setThreadCount(threads);
-                                 if (w.bytes)
-                                   fill<std::uint8_t>(state, w, across);
-                                 else
-                                   fill<float>(state, w, across);
-                                 setThreadCount(before);
-                                 hwy::SetSupportedTargetsForTest(0);
-                               })
-      ->UseRealTime();
+  const std::string name = w.name + "/" + set + "/" + std::to_string(threads) + "/" + std::to_string(across);
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    hwy::SetSupportedTargetsForTest(target);
+    const int before = threadCount();
+    setThreadCount(threads);
+    if (w.bytes)
+      fill<std::uint8_t>(state, w, across);
+    else
+      fill<float>(state, w, across);
+    setThreadCount(before);
+    hwy::SetSupportedTargetsForTest(0);
+  })->UseRealTime();
 }
 
 // Floats written past the caches, 64 MiB of them.

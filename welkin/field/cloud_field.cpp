@@ -82,8 +82,7 @@ float CloudField::extinction(glm::vec3 p) const {
   const sampler3D shape{&noise_->shape, Wrap::kRepeat}, detail{&noise_->detail, Wrap::kRepeat};
   const glm::vec3 q = cloudPosition(p, static_cast<float>(earthRadiusM_));
   float sum = 0.0f, clear = 0.0f;
-  for (const CloudLayer& layer : layers_)
-    sum += cloudExtinction(layer, placement, shape, detail, q, clear);
+  for (const CloudLayer& layer : layers_) sum += cloudExtinction(layer, placement, shape, detail, q, clear);
   return sum;
 }
 

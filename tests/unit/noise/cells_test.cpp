@@ -36,7 +36,8 @@ TEST(Cells, DistancesChangeNoFasterThanPosition) {
 // Points fill their cells evenly, at any time: mean and variance of the uniform distribution on each axis, no
 // correlation between axes (a point that only moves along a diagonal would have it).
 TEST(Cells, PointsAreUniformAndIndependent) {
-  for (const auto& time : {std::optional<double>(), std::optional<double>(3.7), std::optional<double>(-41.2)}) {
+  for (const auto& time :
+       {std::optional<double>(), std::optional<double>(3.7), std::optional<double>(-41.2)}) {
     const CellLattice cells = lattice(3, 64, time);
     std::array<double, 3> sum{}, squares{}, products{};
     const int n = 40000;
@@ -76,7 +77,8 @@ TEST(Cells, NoneRepeatsUnderSmallShifts) {
           const int x = i % 10 * 9, y = i / 10 % 10 * 9, z = i / 100 * 9;
           const FeaturePlace a = place(x, y, z), b = place(x + dx, y + dy, z + dz);
           equal += a.inside[0] == b.inside[0];
-          for (int c = 0; c < 3; ++c) correlation += (a.inside[c] - 0.5) * (b.inside[c] - 0.5) * 12.0 / 3000.0;
+          for (int c = 0; c < 3; ++c)
+            correlation += (a.inside[c] - 0.5) * (b.inside[c] - 0.5) * 12.0 / 3000.0;
         }
         EXPECT_LE(equal, 1);
         EXPECT_NEAR(correlation, 0.0, 0.1) << dx << " " << dy << " " << dz;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <optional>
 
 #include "welkin/core/random.h"
@@ -60,9 +61,9 @@ TEST(Perlin, HasTheKnownSpread) {
       double sum = 0, squares = 0, greatest = 0;
       const int n = 100000;
       Random random(1);
+      std::optional<Noise> noise;
       for (int i = 0; i < n; ++i) {
-        if (evolving && i % 1000 == 0) p.time = 0.237 * i;
-        static std::optional<Noise> noise;
+        if (evolving && i % 1000 == 0) p.time = 0.00237 * i;
         if (i % 1000 == 0) noise.emplace(p);
         const double v = noise->sample(somewhere(random, 1.0));
         sum += v;

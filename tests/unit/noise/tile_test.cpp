@@ -73,7 +73,8 @@ TEST(Tile, RankingKeepsTheOrder) {
   std::vector<std::pair<float, float>> pairs;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)
-      pairs.emplace_back(map.at(x, y), static_cast<float>(perlin.sample({(x + 0.5) / n, (y + 0.5) / n, 0.0})));
+      pairs.emplace_back(map.at(x, y),
+                         static_cast<float>(perlin.sample({(x + 0.5) / n, (y + 0.5) / n, 0.0})));
   std::sort(pairs.begin(), pairs.end());
   for (std::size_t i = 1; i < pairs.size(); ++i) EXPECT_GE(pairs[i].second, pairs[i - 1].second - 1e-5f);
 }
