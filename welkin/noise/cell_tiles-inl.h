@@ -35,10 +35,10 @@ class CellTiles {
   using DU = hn::RebindToUnsigned<D>;
   using DI = hn::RebindToSigned<D>;
   using V = hn::Vec<D>;
+  static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 
   // The block's x, y and z are relative to the tables' first and multiples of the tiles' sizes.
-  CellTiles(const CellTables& tables, const Block& block, Scratch& scratch)
-      : tables_(tables), block_(block), lanes_(static_cast<int>(hn::Lanes(D()))) {
+  CellTiles(const CellTables& tables, const Block& block, Scratch& scratch) : tables_(tables), block_(block) {
     makePoints(scratch);
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
     for (auto& q : near_) q = scratch.take<float>(most);
@@ -46,7 +46,7 @@ class CellTiles {
     alongX_ = scratch.take<float>(most * static_cast<std::size_t>(kTileX));
     alongZ_ = scratch.take<float>(most);
     for (auto& b : beside_) b = scratch.take<float>(most);
-    runs_ = scratch.take<Run>(most / static_cast<std::size_t>(lanes_) + 1);
+    runs_ = scratch.take<Run>(most / std::size_t{kLanes} + 1);
   }
 
   // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
@@ -107,7 +107,7 @@ class CellTiles {
             for (int a = 0; a < lattice.axes(); ++a) points_[a][at + i] = p.inside[a];
           }
         } else {
-          for (int i = 0; i < count_[0]; i += lanes_) {
+          for (int i = 0; i < count_[0]; i += kLanes) {
             const auto sum = hn::Add(hn::LoadU(du, hashes[0] + i), hn::Set(du, row));
             for (int a = 0; a < lattice.axes(); ++a) {
               const auto h = mixed(hn::Add(sum, hn::Set(du, CellLattice::kAxisStep * (a + 1u))));
@@ -187,7 +187,7 @@ class CellTiles {
     for (int k = -deep; k <= box_[2].cells + deep; ++k)
       for (int j = -reach; j <= box_[1].cells + reach; ++j) {
         const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
-        for (int i = 0; i < across; i += lanes_) {
+        for (int i = 0; i < across; i += kLanes) {
           const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
           const auto px =
               hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
@@ -199,7 +199,7 @@ class CellTiles {
           if (solid) addAxis(2, from, k, nearest, farthest);
           next = hn::Min(next, hn::Max(first, farthest));
           first = hn::Min(first, farthest);
-          hn::StoreU(nearest, d, away_ + runs * static_cast<std::size_t>(lanes_));
+          hn::StoreU(nearest, d, away_ + runs * std::size_t{kLanes});
           runs_[runs++] = {from, {i - reach, j, k}};
         }
       }
@@ -215,7 +215,7 @@ class CellTiles {
     nearCount_ = 0;
     for (std::size_t v = 0; v < runs; ++v) {
       std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * static_cast<std::size_t>(lanes_)), most), bits);
+      hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * std::size_t{kLanes}), most), bits);
       const Run& run = runs_[v];
       for (unsigned left = bits[0]; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
@@ -254,7 +254,7 @@ class CellTiles {
     const bool solid = tables_.lattice->axes() == 3;
     const CellPlaces& px = axis(0);
     HWY_ALIGN std::int32_t lane[kTileX];
-    for (int x = 0; x < block_.width; x += lanes_) {
+    for (int x = 0; x < block_.width; x += kLanes) {
       const std::int32_t* cell = px.cell + block_.x + x;
       hn::Store(hn::Sub(hn::LoadU(di, cell), hn::Set(di, cell[0])), di, lane);
       const auto ux = hn::LoadU(d, px.inside + block_.x + x);
@@ -264,6 +264,7 @@ class CellTiles {
           y1 = sameCell(1, y);
           gatherAround(cell[0] - origin_[0], lane, axis(1).cell[block_.y + y] - origin_[1],
                        solid ? axis(2).cell[block_.z + z] - origin_[2] : 0, ux);
+          keepNear(rangeOf(1, y, y1), solid ? rangeOf(2, z, z1) : Range{0.0f, 0.0f});
           for (int r = y; r < y1; ++r) fillRows(x, r, z, z1);
         }
       }
@@ -282,7 +283,13 @@ class CellTiles {
     const D d;
     const bool solid = tables_.lattice->axes() == 3;
     const bool near =
-        lane[lanes_ - 1] + 2 < lanes_;  // one vector holds all points that the lanes see in a row
+        lane[kLanes - 1] + 2 < kLanes;  // one vector holds all points that the lanes see in a row
+    // Which point of that vector each lane sees in the cell before its own, in its own and in the one after.
+    decltype(hn::IndicesFromVec(d, hn::Zero(DI()))) seen[3];
+    for (int i = 0; i < 3; ++i) {
+      const auto index = hn::Add(hn::Load(DI(), lane), hn::Set(DI(), i));
+      seen[i] = hn::IndicesFromVec(d, near ? index : hn::Zero(DI()));
+    }
     around_ = 0;
     for (int k = solid ? -1 : 0; k <= (solid ? 1 : 0); ++k)
       for (int j = -1; j <= 1; ++j) {
@@ -291,50 +298,89 @@ class CellTiles {
           V p[3];
           for (int a = 0; a < tables_.lattice->axes(); ++a) {
             if (near) {
-              HWY_ALIGN std::int32_t index[kTileX];
-              for (int l = 0; l < lanes_; ++l) index[l] = lane[l] + i + 1;
-              p[a] = hn::TableLookupLanes(hn::LoadU(d, points_[a] + at - 1), hn::SetTableIndices(d, index));
+              p[a] = hn::TableLookupLanes(hn::LoadU(d, points_[a] + at - 1), seen[i + 1]);
             } else {
               HWY_ALIGN float value[kTileX];
-              for (int l = 0; l < lanes_; ++l)
+              for (int l = 0; l < kLanes; ++l)
                 value[l] = points_[a][at + static_cast<std::size_t>(lane[l]) + i];
               p[a] = hn::Load(d, value);
             }
           }
           const auto dx = hn::Sub(hn::Add(p[0], hn::Set(d, static_cast<float>(i))), ux);
-          hn::Store(hn::Mul(dx, dx), d, aroundX_ + around_ * lanes_);
-          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, aroundY_ + around_ * lanes_);
+          hn::Store(hn::Mul(dx, dx), d, aroundX_ + around_ * kLanes);
+          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, aroundY_ + around_ * kLanes);
           if (solid)
-            hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, aroundZ_ + around_ * lanes_);
+            hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, aroundZ_ + around_ * kLanes);
         }
       }
+  }
+
+  // Places within their cell of the samples from i to before end.
+  struct Range {
+    float lo, hi;
+  };
+  Range rangeOf(int a, int i, int end) const {
+    return {axis(a).inside[first(a) + i], axis(a).inside[first(a) + end - 1]};
+  }
+
+  // Of the points around, keeps those that are the nearest of some lane for some place in the ranges, if only
+  // by bounds; the last is repeated to make their number even.
+  void keepNear(Range y, Range z) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float least[27 * kTileX];
+    auto most = hn::Set(d, kFar);  // some point is within this of all places
+    const auto addBounds = [&](const float* places, Range range, V& nearest, V& farthest) HWY_ATTR {
+      const auto p = hn::Load(d, places), lo = hn::Set(d, range.lo), hi = hn::Set(d, range.hi);
+      const auto near = hn::Max(hn::Max(hn::Sub(lo, p), hn::Sub(p, hi)), hn::Zero(d));
+      const auto far = hn::Max(hn::Sub(hi, p), hn::Sub(p, lo));
+      nearest = hn::MulAdd(near, near, nearest);
+      farthest = hn::MulAdd(far, far, farthest);
+    };
+    for (int q = 0; q < around_; ++q) {
+      auto nearest = hn::Load(d, aroundX_ + q * kLanes), farthest = nearest;
+      addBounds(aroundY_ + q * kLanes, y, nearest, farthest);
+      if (solid) addBounds(aroundZ_ + q * kLanes, z, nearest, farthest);
+      hn::Store(nearest, d, least + q * kLanes);
+      most = hn::Min(most, farthest);
+    }
+    most = hn::Mul(most, hn::Set(d, 1.00001f));
+    int kept = 0;
+    const auto move = [&](int q) HWY_ATTR {
+      for (float* around : {aroundX_, aroundY_, aroundZ_})
+        hn::Store(hn::Load(d, around + q * kLanes), d, around + kept * kLanes);
+      ++kept;
+    };
+    for (int q = 0; q < around_; ++q)
+      if (!hn::AllFalse(d, hn::Le(hn::Load(d, least + q * kLanes), most))) move(q);
+    if (kept % 2 != 0) move(kept - 1);
+    around_ = kept;
   }
 
   // Row r of the slices z to z1, which lie in one cell.
   HWY_INLINE void fillRows(int x, int r, int z, int z1) {
     const D d;
     const bool solid = tables_.lattice->axes() == 3;
-    HWY_ALIGN float flat[27 * kTileX];  // squares of the distances in x and y
+    HWY_ALIGN float flat[28 * kTileX];  // squares of the distances in x and y
     const auto uy = hn::Set(d, axis(1).inside[block_.y + r]);
     auto least = hn::Set(d, kFar);
     for (int q = 0; q < around_; ++q) {
-      const auto dy = hn::Sub(hn::Load(d, aroundY_ + q * lanes_), uy);
-      const auto square = hn::MulAdd(dy, dy, hn::Load(d, aroundX_ + q * lanes_));
+      const auto dy = hn::Sub(hn::Load(d, aroundY_ + q * kLanes), uy);
+      const auto square = hn::MulAdd(dy, dy, hn::Load(d, aroundX_ + q * kLanes));
       least = hn::Min(least, square);
-      hn::Store(square, d, flat + q * lanes_);
+      hn::Store(square, d, flat + q * kLanes);
     }
     for (int s = z; s < z1; ++s) {
       if (solid) {
         const auto uz = hn::Set(d, axis(2).inside[block_.z + s]);
         auto other = least = hn::Set(d, kFar);  // two chains
-        for (int q = 0; q < 26; q += 2) {
-          const auto dz0 = hn::Sub(hn::Load(d, aroundZ_ + q * lanes_), uz);
-          const auto dz1 = hn::Sub(hn::Load(d, aroundZ_ + (q + 1) * lanes_), uz);
-          least = hn::Min(least, hn::MulAdd(dz0, dz0, hn::Load(d, flat + q * lanes_)));
-          other = hn::Min(other, hn::MulAdd(dz1, dz1, hn::Load(d, flat + (q + 1) * lanes_)));
+        for (int q = 0; q < around_; q += 2) {
+          const auto dz0 = hn::Sub(hn::Load(d, aroundZ_ + q * kLanes), uz);
+          const auto dz1 = hn::Sub(hn::Load(d, aroundZ_ + (q + 1) * kLanes), uz);
+          least = hn::Min(least, hn::MulAdd(dz0, dz0, hn::Load(d, flat + q * kLanes)));
+          other = hn::Min(other, hn::MulAdd(dz1, dz1, hn::Load(d, flat + (q + 1) * kLanes)));
         }
-        const auto dz = hn::Sub(hn::Load(d, aroundZ_ + 26 * lanes_), uz);
-        least = hn::Min(hn::Min(least, other), hn::MulAdd(dz, dz, hn::Load(d, flat + 26 * lanes_)));
+        least = hn::Min(least, other);
       }
       auto value = hn::Sqrt(least);
       // Points beyond the cells around are farther than 1; so, rarely, is the nearest of these.
@@ -353,7 +399,7 @@ class CellTiles {
     hn::Store(values, d, value);
     const int deep = solid ? kCellReach : 0;
     const int at[3] = {block_.x + x, block_.y + r, block_.z + s};
-    for (int l = 0; l < lanes_; ++l) {
+    for (int l = 0; l < kLanes; ++l) {
       if (value[l] <= 1.0f) continue;
       float least = value[l] * value[l];
       for (int k = -deep; k <= deep; ++k)
@@ -387,7 +433,7 @@ class CellTiles {
   HWY_INLINE void squaresOn(int a, float place, const float* plus, float* out) const {
     const D d;
     const auto p = hn::Set(d, place);
-    for (int q = 0; q < nearCount_; q += lanes_) {
+    for (int q = 0; q < nearCount_; q += kLanes) {
       const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
       hn::Store(plus == nullptr ? hn::Mul(away, away) : hn::MulAdd(away, away, hn::Load(d, plus + q)), d,
                 out + q);
@@ -414,12 +460,12 @@ class CellTiles {
     const bool solid = tables_.lattice->axes() == 3;
     const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
     auto greatest = hn::Zero(d);
-    for (int i = 0; i < kTileX; i += lanes_) {
+    for (int i = 0; i < kTileX; i += kLanes) {
       const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
       const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
       for (int q = 0; q < nearCount_; ++q) {
         const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
-        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * lanes_);
+        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * kLanes);
       }
       for (int s = z; s < z + tables_.tile[2]; ++s) {
         if (solid) squaresOn(2, inTile(2, s, z), nullptr, alongZ_);
@@ -432,7 +478,7 @@ class CellTiles {
           auto first0 = hn::Set(d, kFar), second0 = first0, first1 = first0, second1 = first0;
           for (int q = 0; q < nearCount_; q += 4)
             for (int k = 0; k < 4; ++k) {
-              const auto dx = hn::Load(d, alongX_ + (q + k) * lanes_);
+              const auto dx = hn::Load(d, alongX_ + (q + k) * kLanes);
               const auto square0 = hn::Add(dx, hn::Set(d, beside_[0][q + k]));
               const auto square1 = hn::Add(dx, hn::Set(d, beside_[1][q + k]));
               if constexpr (kFeature != Feature::kF1) {
@@ -467,7 +513,6 @@ class CellTiles {
 
   const CellTables& tables_;
   const Block block_;
-  const int lanes_;
   int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
   float* points_[3] = {};                             // within their cells
   Extent box_[3];
@@ -478,7 +523,7 @@ class CellTiles {
   float *alongZ_, *beside_[2];  // to a slice in z, to two rows in y and z
   float* away_;                 // of each, the square of the distance beside x
   int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
-  HWY_ALIGN float aroundX_[27 * kTileX], aroundY_[27 * kTileX], aroundZ_[27 * kTileX];
+  HWY_ALIGN float aroundX_[28 * kTileX], aroundY_[28 * kTileX], aroundZ_[28 * kTileX];
   float* out_ = nullptr;
   int outStride_ = 0;
   float weight_ = 1.0f, bias_ = 0.0f;
