@@ -12,7 +12,7 @@ target_link_libraries(welkin_all INTERFACE ${folders})
 install(TARGETS welkin_all EXPORT welkin-targets)
 
 # The packages that the exported targets name, for find_dependency(). A target that is missing here makes tests/install fail.
-set(WELKIN_PACKAGES "Threads glm Erfa OpenEXR PNG Epoxy")
+set(WELKIN_PACKAGES "Threads glm hwy Erfa OpenEXR PNG Epoxy")
 if(WELKIN_OPENVDB)
   string(APPEND WELKIN_PACKAGES " Vdb")
 endif()

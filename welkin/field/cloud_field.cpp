@@ -52,9 +52,9 @@ bool crossings(glm::vec3 p, glm::vec3 d, double earthRadius, double height, doub
 std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed) {
   auto noise = std::make_shared<CloudNoise>();
   noise->placement = Image<float>(kPlacementSize, kPlacementSize, 3);
-  const noise::Fractal cells{.octaves = 3, .frequency = 12, .lacunarity = 2, .persistence = 0.4f};
-  const noise::Fractal fractal{.octaves = 6, .frequency = 8, .lacunarity = 2, .persistence = 0.5f};
-  const noise::Fractal patches{.octaves = 4, .frequency = 6, .lacunarity = 2, .persistence = 0.45f};
+  const noise::Octaves cells{.octaves = 3, .frequency = 12, .lacunarity = 2, .persistence = 0.4f};
+  const noise::Octaves fractal{.octaves = 6, .frequency = 8, .lacunarity = 2, .persistence = 0.5f};
+  const noise::Octaves patches{.octaves = 4, .frequency = 6, .lacunarity = 2, .persistence = 0.45f};
   const Image<float> maps[3] = {noise::gaussianCellMap(hashOf(seed, 1), kPlacementSize, cells),
                                 noise::gaussianMap(hashOf(seed, 2), kPlacementSize, fractal),
                                 noise::gaussianMap(hashOf(seed, 3), kPlacementSize, patches)};
@@ -82,8 +82,7 @@ float CloudField::extinction(glm::vec3 p) const {
   const sampler3D shape{&noise_->shape, Wrap::kRepeat}, detail{&noise_->detail, Wrap::kRepeat};
   const glm::vec3 q = cloudPosition(p, static_cast<float>(earthRadiusM_));
   float sum = 0.0f, clear = 0.0f;
-  for (const CloudLayer& layer : layers_)
-    sum += cloudExtinction(layer, placement, shape, detail, q, clear);
+  for (const CloudLayer& layer : layers_) sum += cloudExtinction(layer, placement, shape, detail, q, clear);
   return sum;
 }
 

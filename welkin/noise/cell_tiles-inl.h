@@ -18,6 +18,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "welkin/noise/fill.h"
@@ -33,14 +35,18 @@ class CellTiles {
   using DU = hn::RebindToUnsigned<D>;
   using DI = hn::RebindToSigned<D>;
   using V = hn::Vec<D>;
+  static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 
   // The block's x, y and z are relative to the tables' first and multiples of the tiles' sizes.
-  CellTiles(const CellTables& tables, const Block& block, Scratch& scratch)
-      : tables_(tables), block_(block), lanes_(static_cast<int>(hn::Lanes(D()))) {
+  CellTiles(const CellTables& tables, const Block& block, Scratch& scratch) : tables_(tables), block_(block) {
     makePoints(scratch);
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
     for (auto& q : near_) q = scratch.take<float>(most);
     away_ = scratch.take<float>(most);
+    alongX_ = scratch.take<float>(most * static_cast<std::size_t>(kTileX));
+    alongZ_ = scratch.take<float>(most);
+    for (auto& b : beside_) b = scratch.take<float>(most);
+    runs_ = scratch.take<Run>(most / std::size_t{kLanes} + 1);
   }
 
   // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
@@ -51,22 +57,16 @@ class CellTiles {
     weight_ = weight;
     bias_ = bias;
     add_ = add;
+    if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
     for (int z = 0; z < block_.slices; z += tz)
       for (int y = 0; y < block_.rows; y += ty)
         for (int x = 0; x < block_.width; x += kTileX) {
-          findNear(x, y, z, feature != Feature::kF1);
-          switch (feature) {
-            case Feature::kF1:
-              fillTile<Feature::kF1>(x, y, z);
-              break;
-            case Feature::kF2:
-              fillTile<Feature::kF2>(x, y, z);
-              break;
-            case Feature::kF2MinusF1:
-              fillTile<Feature::kF2MinusF1>(x, y, z);
-              break;
-          }
+          const float safe = findNear(x, y, z, feature != Feature::kF1);
+          if (fillTile(feature, x, y, z) <= safe) continue;
+          // Some sample's point may be farther than those that were looked at.
+          collect(kCellReach, feature != Feature::kF1);
+          fillTile(feature, x, y, z);
         }
   }
 
@@ -107,7 +107,7 @@ class CellTiles {
             for (int a = 0; a < lattice.axes(); ++a) points_[a][at + i] = p.inside[a];
           }
         } else {
-          for (int i = 0; i < count_[0]; i += lanes_) {
+          for (int i = 0; i < count_[0]; i += kLanes) {
             const auto sum = hn::Add(hn::LoadU(du, hashes[0] + i), hn::Set(du, row));
             for (int a = 0; a < lattice.axes(); ++a) {
               const auto h = mixed(hn::Add(sum, hn::Set(du, CellLattice::kAxisStep * (a + 1u))));
@@ -147,7 +147,15 @@ class CellTiles {
     return {p.cell[begin] - origin_[a], cells, p.inside[begin], static_cast<float>(cells) + p.inside[end]};
   }
 
-  void findNear(int x, int y, int z, bool second) {
+  // A vector of points in one row of cells.
+  struct Run {
+    std::size_t from;  // in points_
+    int cell[3];       // of its first, relative to the tile's first
+  };
+
+  // Finds the points that can matter among those in the cells beside the tile's, and returns the square of
+  // the distance within which no others lie; where sums cannot be taken back, all points at once.
+  float findNear(int x, int y, int z, bool second) {
     const bool solid = tables_.lattice->axes() == 3;
     box_[0] = extent(0, x, kTileX);
     box_[1] = extent(1, y, tables_.tile[1]);
@@ -156,15 +164,18 @@ class CellTiles {
     float margin = 1.0f;
     for (int a = 0; a < tables_.lattice->axes(); ++a)
       margin = std::min({margin, box_[a].lo, static_cast<float>(box_[a].cells + 1) - box_[a].hi});
-    const float safe = 1.0f + std::max(margin, 0.0f);
-    const float enough = solid ? 3.0f : 2.0f;  // no sample's second point is farther
-    const float limit = std::min(collect(1, enough, second), enough);
-    if (limit > safe * safe) collect(kCellReach, enough, second);
+    const float safe = (1.0f + std::max(margin, 0.0f)) * (1.0f + std::max(margin, 0.0f));
+    if (collect(1, second) <= safe || !add_) return safe;
+    collect(kCellReach, second);
+    return enough();
   }
+
+  // No sample's second point is farther (square).
+  float enough() const { return tables_.lattice->axes() == 3 ? 3.0f : 2.0f; }
 
   // Collects the points that can matter among those at most `reach` cells from the tile's; returns the square
   // of the distance within which they lie.
-  float collect(int reach, float enough, bool second) {
+  float collect(int reach, bool second) {
     const D d;
     const bool solid = tables_.lattice->axes() == 3;
     const int deep = solid ? reach : 0;
@@ -172,11 +183,11 @@ class CellTiles {
     const int across = box_[0].cells + 1 + 2 * reach;
     const auto zero = hn::Zero(d), far = hn::Set(d, kFar);
     auto first = far, next = far;  // least and second least of the greatest distances' squares, by lane
-    std::size_t n = 0;
+    std::size_t runs = 0;
     for (int k = -deep; k <= box_[2].cells + deep; ++k)
       for (int j = -reach; j <= box_[1].cells + reach; ++j) {
         const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
-        for (int i = 0; i < across; i += lanes_) {
+        for (int i = 0; i < across; i += kLanes) {
           const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
           const auto px =
               hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
@@ -188,8 +199,8 @@ class CellTiles {
           if (solid) addAxis(2, from, k, nearest, farthest);
           next = hn::Min(next, hn::Max(first, farthest));
           first = hn::Min(first, farthest);
-          hn::StoreU(nearest, d, away_ + n);
-          n += static_cast<std::size_t>(lanes_);
+          hn::StoreU(nearest, d, away_ + runs * std::size_t{kLanes});
+          runs_[runs++] = {from, {i - reach, j, k}};
         }
       }
     float limit = hn::GetLane(hn::MinOfLanes(d, first));
@@ -198,26 +209,26 @@ class CellTiles {
       const auto rest = hn::IfThenElse(hn::Eq(first, hn::Set(d, limit)), next, first);
       limit = hn::GetLane(hn::MinOfLanes(d, rest));
     }
-    limit = std::min(limit, enough) * 1.00001f;
+    limit = std::min(limit, enough()) * 1.00001f;
 
     const auto most = hn::Set(d, limit);
     nearCount_ = 0;
-    n = 0;
-    for (int k = -deep; k <= box_[2].cells + deep; ++k)
-      for (int j = -reach; j <= box_[1].cells + reach; ++j) {
-        const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
-        for (int i = 0; i < across; i += lanes_, n += static_cast<std::size_t>(lanes_)) {
-          const auto keep = hn::Le(hn::LoadU(d, away_ + n), most);
-          if (hn::AllFalse(d, keep)) continue;
-          const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
-          const auto px =
-              hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
-          hn::StoreU(hn::Compress(px, keep), d, near_[0] + nearCount_);
-          keepAxis(1, from, j, keep);
-          if (solid) keepAxis(2, from, k, keep);
-          nearCount_ += static_cast<int>(hn::CountTrue(d, keep));
-        }
+    for (std::size_t v = 0; v < runs; ++v) {
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * std::size_t{kLanes}), most), bits);
+      const Run& run = runs_[v];
+      for (unsigned left = bits[0]; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        const std::size_t from = run.from + static_cast<std::size_t>(lane);
+        near_[0][nearCount_] = points_[0][from] + static_cast<float>(run.cell[0] + lane);
+        near_[1][nearCount_] = points_[1][from] + static_cast<float>(run.cell[1]);
+        if (solid) near_[2][nearCount_] = points_[2][from] + static_cast<float>(run.cell[2]);
+        ++nearCount_;
       }
+    }
+    // Far points, so that loops over these may take four at a time.
+    for (; nearCount_ % 4 != 0; ++nearCount_)
+      for (auto& q : near_) q[nearCount_] = kFar;
     return limit;
   }
 
@@ -234,8 +245,181 @@ class CellTiles {
     nearest = hn::MulAdd(near, near, nearest);
     farthest = hn::MulAdd(far, far, farthest);
   }
-  HWY_INLINE void keepAxis(int a, std::size_t from, int cell, hn::Mask<D> keep) {
-    hn::StoreU(hn::Compress(placeOn(a, from, cell), keep), D(), near_[a] + nearCount_);
+  // Samples at least an eighth of a cell apart: a vector spans a cell or more, and boxes leave too many
+  // points. Every lane looks at the 27 (9) cells around its own. What the lanes see of these is gathered once
+  // for all rows in one cell, and the distances in x and y once for all slices.
+  void fillDense() {
+    const DI di;
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    const CellPlaces& px = axis(0);
+    HWY_ALIGN std::int32_t lane[kTileX];
+    for (int x = 0; x < block_.width; x += kLanes) {
+      const std::int32_t* cell = px.cell + block_.x + x;
+      hn::Store(hn::Sub(hn::LoadU(di, cell), hn::Set(di, cell[0])), di, lane);
+      const auto ux = hn::LoadU(d, px.inside + block_.x + x);
+      for (int z = 0, z1 = 0; z < block_.slices; z = z1) {
+        z1 = solid ? sameCell(2, z) : 1;
+        for (int y = 0, y1 = 0; y < block_.rows; y = y1) {
+          y1 = sameCell(1, y);
+          gatherAround(cell[0] - origin_[0], lane, axis(1).cell[block_.y + y] - origin_[1],
+                       solid ? axis(2).cell[block_.z + z] - origin_[2] : 0, ux);
+          keepNear(rangeOf(1, y, y1), solid ? rangeOf(2, z, z1) : Range{0.0f, 0.0f});
+          for (int r = y; r < y1; ++r) fillRows(x, r, z, z1);
+        }
+      }
+    }
+  }
+
+  // The end of the run of samples in one cell that begins with sample i.
+  int sameCell(int a, int i) const {
+    const std::int32_t* cell = axis(a).cell + first(a);
+    int end = i + 1;
+    while (end < samples(a) && cell[end] == cell[i]) ++end;
+    return end;
+  }
+
+  void gatherAround(int cellX, const std::int32_t* lane, int cellY, int cellZ, V ux) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    const bool near =
+        lane[kLanes - 1] + 2 < kLanes;  // one vector holds all points that the lanes see in a row
+    // Which point of that vector each lane sees in the cell before its own, in its own and in the one after.
+    decltype(hn::IndicesFromVec(d, hn::Zero(DI()))) seen[3];
+    for (int i = 0; i < 3; ++i) {
+      const auto index = hn::Add(hn::Load(DI(), lane), hn::Set(DI(), i));
+      seen[i] = hn::IndicesFromVec(d, near ? index : hn::Zero(DI()));
+    }
+    around_ = 0;
+    for (int k = solid ? -1 : 0; k <= (solid ? 1 : 0); ++k)
+      for (int j = -1; j <= 1; ++j) {
+        const std::size_t at = rowAt(cellY + j, cellZ + k) + static_cast<std::size_t>(cellX);
+        for (int i = -1; i <= 1; ++i, ++around_) {
+          V p[3];
+          for (int a = 0; a < tables_.lattice->axes(); ++a) {
+            if (near) {
+              p[a] = hn::TableLookupLanes(hn::LoadU(d, points_[a] + at - 1), seen[i + 1]);
+            } else {
+              HWY_ALIGN float value[kTileX];
+              for (int l = 0; l < kLanes; ++l)
+                value[l] = points_[a][at + static_cast<std::size_t>(lane[l]) + i];
+              p[a] = hn::Load(d, value);
+            }
+          }
+          const auto dx = hn::Sub(hn::Add(p[0], hn::Set(d, static_cast<float>(i))), ux);
+          hn::Store(hn::Mul(dx, dx), d, aroundX_ + around_ * kLanes);
+          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, aroundY_ + around_ * kLanes);
+          if (solid)
+            hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, aroundZ_ + around_ * kLanes);
+        }
+      }
+  }
+
+  // Places within their cell of the samples from i to before end.
+  struct Range {
+    float lo, hi;
+  };
+  Range rangeOf(int a, int i, int end) const {
+    return {axis(a).inside[first(a) + i], axis(a).inside[first(a) + end - 1]};
+  }
+
+  // Of the points around, keeps those that are the nearest of some lane for some place in the ranges, if only
+  // by bounds; the last is repeated to make their number even.
+  void keepNear(Range y, Range z) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float least[27 * kTileX];
+    auto most = hn::Set(d, kFar);  // some point is within this of all places
+    const auto addBounds = [&](const float* places, Range range, V& nearest, V& farthest) HWY_ATTR {
+      const auto p = hn::Load(d, places), lo = hn::Set(d, range.lo), hi = hn::Set(d, range.hi);
+      const auto near = hn::Max(hn::Max(hn::Sub(lo, p), hn::Sub(p, hi)), hn::Zero(d));
+      const auto far = hn::Max(hn::Sub(hi, p), hn::Sub(p, lo));
+      nearest = hn::MulAdd(near, near, nearest);
+      farthest = hn::MulAdd(far, far, farthest);
+    };
+    for (int q = 0; q < around_; ++q) {
+      auto nearest = hn::Load(d, aroundX_ + q * kLanes), farthest = nearest;
+      addBounds(aroundY_ + q * kLanes, y, nearest, farthest);
+      if (solid) addBounds(aroundZ_ + q * kLanes, z, nearest, farthest);
+      hn::Store(nearest, d, least + q * kLanes);
+      most = hn::Min(most, farthest);
+    }
+    most = hn::Mul(most, hn::Set(d, 1.00001f));
+    int kept = 0;
+    const auto move = [&](int q) HWY_ATTR {
+      for (float* around : {aroundX_, aroundY_, aroundZ_})
+        hn::Store(hn::Load(d, around + q * kLanes), d, around + kept * kLanes);
+      ++kept;
+    };
+    for (int q = 0; q < around_; ++q)
+      if (!hn::AllFalse(d, hn::Le(hn::Load(d, least + q * kLanes), most))) move(q);
+    if (kept % 2 != 0) move(kept - 1);
+    around_ = kept;
+  }
+
+  // Row r of the slices z to z1, which lie in one cell.
+  HWY_INLINE void fillRows(int x, int r, int z, int z1) {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float flat[28 * kTileX];  // squares of the distances in x and y
+    const auto uy = hn::Set(d, axis(1).inside[block_.y + r]);
+    auto least = hn::Set(d, kFar);
+    for (int q = 0; q < around_; ++q) {
+      const auto dy = hn::Sub(hn::Load(d, aroundY_ + q * kLanes), uy);
+      const auto square = hn::MulAdd(dy, dy, hn::Load(d, aroundX_ + q * kLanes));
+      least = hn::Min(least, square);
+      hn::Store(square, d, flat + q * kLanes);
+    }
+    for (int s = z; s < z1; ++s) {
+      if (solid) {
+        const auto uz = hn::Set(d, axis(2).inside[block_.z + s]);
+        auto other = least = hn::Set(d, kFar);  // two chains
+        for (int q = 0; q < around_; q += 2) {
+          const auto dz0 = hn::Sub(hn::Load(d, aroundZ_ + q * kLanes), uz);
+          const auto dz1 = hn::Sub(hn::Load(d, aroundZ_ + (q + 1) * kLanes), uz);
+          least = hn::Min(least, hn::MulAdd(dz0, dz0, hn::Load(d, flat + q * kLanes)));
+          other = hn::Min(other, hn::MulAdd(dz1, dz1, hn::Load(d, flat + (q + 1) * kLanes)));
+        }
+        least = hn::Min(least, other);
+      }
+      auto value = hn::Sqrt(least);
+      // Points beyond the cells around are farther than 1; so, rarely, is the nearest of these.
+      if (!hn::AllTrue(d, hn::Le(least, hn::Set(d, 1.0f)))) value = exactly(x, r, s, value);
+      float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
+      const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
+      hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
+    }
+  }
+
+  // The lanes whose value is above 1, from all points within kCellReach.
+  HWY_NOINLINE V exactly(int x, int r, int s, V values) const {
+    const D d;
+    const bool solid = tables_.lattice->axes() == 3;
+    HWY_ALIGN float value[kTileX];
+    hn::Store(values, d, value);
+    const int deep = solid ? kCellReach : 0;
+    const int at[3] = {block_.x + x, block_.y + r, block_.z + s};
+    for (int l = 0; l < kLanes; ++l) {
+      if (value[l] <= 1.0f) continue;
+      float least = value[l] * value[l];
+      for (int k = -deep; k <= deep; ++k)
+        for (int j = -kCellReach; j <= kCellReach; ++j)
+          for (int i = -kCellReach; i <= kCellReach; ++i) {
+            const int step[3] = {i, j, k};
+            const std::size_t from = rowAt(axis(1).cell[at[1]] - origin_[1] + j,
+                                           solid ? axis(2).cell[at[2]] - origin_[2] + k : 0) +
+                                     static_cast<std::size_t>(axis(0).cell[at[0] + l] - origin_[0] + i);
+            float square = 0.0f;
+            for (int a = 0; a < tables_.lattice->axes(); ++a) {
+              const float away =
+                  points_[a][from] + static_cast<float>(step[a]) - axis(a).inside[at[a] + (a == 0 ? l : 0)];
+              square += away * away;
+            }
+            least = std::min(least, square);
+          }
+      value[l] = std::sqrt(least);
+    }
+    return hn::Load(d, value);
   }
 
   // Place of a sample relative to the tile's first cell.
@@ -245,55 +429,101 @@ class CellTiles {
            p.inside[first(a) + sample];
   }
 
+  // The squares of distances along one axis, from the points that matter to a place.
+  HWY_INLINE void squaresOn(int a, float place, const float* plus, float* out) const {
+    const D d;
+    const auto p = hn::Set(d, place);
+    for (int q = 0; q < nearCount_; q += kLanes) {
+      const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
+      hn::Store(plus == nullptr ? hn::Mul(away, away) : hn::MulAdd(away, away, hn::Load(d, plus + q)), d,
+                out + q);
+    }
+  }
+
+  // Returns the square of the greatest distance that decided over a sample.
+  float fillTile(Feature feature, int x, int y, int z) {
+    switch (feature) {
+      case Feature::kF1:
+        return fillTileAs<Feature::kF1>(x, y, z);
+      case Feature::kF2:
+        return fillTileAs<Feature::kF2>(x, y, z);
+      case Feature::kF2MinusF1:
+        break;
+    }
+    return fillTileAs<Feature::kF2MinusF1>(x, y, z);
+  }
+
   template <Feature kFeature>
-  HWY_INLINE void fillTile(int x, int y, int z) {
+  HWY_INLINE float fillTileAs(int x, int y, int z) {
     const D d;
     const DI di;
     const bool solid = tables_.lattice->axes() == 3;
     const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
-    for (int s = z; s < z + tables_.tile[2]; ++s)
-      for (int r = y; r < y + tables_.tile[1]; ++r) {
-        const auto py = hn::Set(d, inTile(1, r, y));
-        const auto pz = hn::Set(d, solid ? inTile(2, s, z) : 0.0f);
-        for (int q = 0; q < nearCount_; q += lanes_) {
-          const auto dy = hn::Sub(hn::LoadU(d, near_[1] + q), py);
-          auto away = hn::Mul(dy, dy);
-          if (solid) {
-            const auto dz = hn::Sub(hn::LoadU(d, near_[2] + q), pz);
-            away = hn::MulAdd(dz, dz, away);
-          }
-          hn::StoreU(away, d, away_ + q);
-        }
-        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
-        for (int i = 0; i < kTileX; i += lanes_) {
-          const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
-          const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
-          auto first = hn::Set(d, kFar), second = first;
-          for (int q = 0; q < nearCount_; ++q) {
-            const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
-            const auto square = hn::MulAdd(dx, dx, hn::Set(d, away_[q]));
-            if constexpr (kFeature != Feature::kF1) second = hn::Min(second, hn::Max(first, square));
-            first = hn::Min(first, square);
-          }
-          auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
-          if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
-          const auto sum = add_ ? hn::LoadU(d, out + i) : hn::Set(d, bias_);
-          hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out + i);
+    auto greatest = hn::Zero(d);
+    for (int i = 0; i < kTileX; i += kLanes) {
+      const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
+      const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
+      for (int q = 0; q < nearCount_; ++q) {
+        const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
+        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * kLanes);
+      }
+      for (int s = z; s < z + tables_.tile[2]; ++s) {
+        if (solid) squaresOn(2, inTile(2, s, z), nullptr, alongZ_);
+        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + y) * outStride_ + x + i;
+        for (int r = 0; r < tables_.tile[1]; r += 2, out += std::ptrdiff_t{2} * outStride_) {
+          // Two rows share the loads; a tile of one row has its only one twice.
+          const int other = r + 1 < tables_.tile[1] ? r + 1 : r;
+          squaresOn(1, inTile(1, y + r, y), solid ? alongZ_ : nullptr, beside_[0]);
+          squaresOn(1, inTile(1, y + other, y), solid ? alongZ_ : nullptr, beside_[1]);
+          auto first0 = hn::Set(d, kFar), second0 = first0, first1 = first0, second1 = first0;
+          for (int q = 0; q < nearCount_; q += 4)
+            for (int k = 0; k < 4; ++k) {
+              const auto dx = hn::Load(d, alongX_ + (q + k) * kLanes);
+              const auto square0 = hn::Add(dx, hn::Set(d, beside_[0][q + k]));
+              const auto square1 = hn::Add(dx, hn::Set(d, beside_[1][q + k]));
+              if constexpr (kFeature != Feature::kF1) {
+                second0 = hn::Min(second0, hn::Max(first0, square0));
+                second1 = hn::Min(second1, hn::Max(first1, square1));
+              }
+              first0 = hn::Min(first0, square0);
+              first1 = hn::Min(first1, square1);
+            }
+          constexpr bool kOne = kFeature == Feature::kF1;
+          greatest = hn::Max(greatest, hn::Max(kOne ? first0 : second0, kOne ? first1 : second1));
+          put<kFeature>(first1, second1, out + static_cast<std::ptrdiff_t>(other - r) * outStride_,
+                        other != r);
+          put<kFeature>(first0, second0, out, true);
         }
       }
+    }
+    return hn::GetLane(hn::MaxOfLanes(d, greatest));
+  }
+
+  template <Feature kFeature>
+  HWY_INLINE void put(V first, V second, float* out, bool wanted) const {
+    const D d;
+    if (!wanted) return;
+    auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+    if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
+    const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
+    hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
   }
 
   static constexpr float kFar = 1e9f;
 
   const CellTables& tables_;
   const Block block_;
-  const int lanes_;
   int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
   float* points_[3] = {};                             // within their cells
   Extent box_[3];
   float* near_[3];  // the points that matter in the tile, relative to its first cell
   int nearCount_ = 0;
-  float* away_;  // of each, the square of the distance beside x
+  Run* runs_;
+  float* alongX_;               // squares of distances: of the points to a vector of samples in x,
+  float *alongZ_, *beside_[2];  // to a slice in z, to two rows in y and z
+  float* away_;                 // of each, the square of the distance beside x
+  int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
+  HWY_ALIGN float aroundX_[28 * kTileX], aroundY_[28 * kTileX], aroundZ_[28 * kTileX];
   float* out_ = nullptr;
   int outStride_ = 0;
   float weight_ = 1.0f, bias_ = 0.0f;

@@ -109,7 +109,7 @@ HWY_INLINE void mixRow(int width, const float* const* cells, float* const* chann
 // Blocks of cells lie at multiples of the tiles; what of them is in the box is stored.
 void fillCells(const FillJob& job, const Block& b, Scratch& scratch) {
   const Block tiles = job.tilesOf(b);
-  const int stride = tiles.width;
+  const int stride = tiles.width + 16;  // rows not all in the same sets of the cache
   const std::size_t samples = static_cast<std::size_t>(stride) * tiles.rows * tiles.slices;
   const bool mixed = job.params->kind == Kind::kPerlinWorley;
   float* values[4] = {};

@@ -136,6 +136,7 @@ struct CellTables {
   const CellLattice* lattice;
   float weight;
   CellPlaces axis[3];
+  bool dense;   // samples at least an eighth of a cell apart along x
   int tile[3];  // samples of a tile: kTileX and powers of two up to kTileMost
 };
 

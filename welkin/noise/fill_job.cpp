@@ -115,6 +115,7 @@ class Tables {
   void addCells(const CellTerm& term, CellTables& out, double scale) {
     out.lattice = &term.lattice;
     out.weight = static_cast<float>(term.weight * scale);
+    out.dense = term.lattice.axis(0).frequency() * job_.grid.spacing.x > 0.126;
     for (int a = 0; a < 3; ++a) {
       out.tile[a] = a == 0 ? kTileX : 1;
       if (a >= term.lattice.axes()) continue;
@@ -158,7 +159,7 @@ class Tables {
   }
 
  private:
-  static constexpr double kTileCells = 0.3;  // of a cell's edge that a tile spans in y and z
+  static constexpr double kTileCells = 0.5;  // of a cell's edge that a tile spans in y and z
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
 

@@ -11,16 +11,10 @@
 
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
-#include "welkin/noise/cellular.h"
-#include "welkin/noise/perlin.h"
+#include "welkin/noise/noise.h"
 
 namespace welkin::noise {
 namespace {
-
-constexpr float kPerlinDeviation = 0.27f;  // of gradient noise
-constexpr float kCellular3Mean = 0.52f,
-                kCellular3Deviation = 0.17f;  // of F1 in space (uniform points, one a cell)
-constexpr float kCellular2Mean = 0.45f, kCellular2Deviation = 0.20f;  // of F1 in the plane
 
 void normalise(std::vector<float>& v) {
   double sum = 0.0, squares = 0.0;
@@ -83,98 +77,53 @@ void makeGaussian(std::vector<float>& v) {
   });
 }
 
-// Calls fill(row, y) for each row of an n x n map of zeros.
-template <class Fill>
-Image<float> fillMap(int n, const Fill& fill) {
-  Image<float> image(n, n, 1);
-  parallelFor(n, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      fill(std::span<float>(&image.at(0, static_cast<int>(y)), n), static_cast<int>(y));
-  });
-  return image;
+// What a sum over the unit tile is for noise.h.
+NoiseParams paramsOf(Kind kind, std::uint64_t seed, int dimensions, const Octaves& sum) {
+  NoiseParams p;
+  p.kind = kind;
+  p.dimensions = dimensions;
+  p.frequency = glm::dvec3(sum.frequency);
+  p.octaves = sum.octaves;
+  p.lacunarity = sum.lacunarity;
+  p.persistence = sum.persistence;
+  p.seed = static_cast<std::int64_t>(seed);
+  return p;
 }
 
-int frequencyOf(const Fractal& fractal, int octave) {
-  int f = fractal.frequency;
-  for (int o = 0; o < octave; ++o) f *= fractal.lacunarity;
-  return f;
-}
-
-// Cells for each sample of a row of n, in octave `octave`.
-float stepOf(const Fractal& fractal, int octave, int n) {
-  return static_cast<float>(frequencyOf(fractal, octave)) / static_cast<float>(n);
-}
-
-// Adds the fractal sum of gradient noise, in its deviations, along row y of a square map.
-void addGradientRow(std::span<float> row, int y, const Perlin& perlin, const Fractal& fractal, float weight) {
-  weight /= kPerlinDeviation;
-  for (int o = 0; o < fractal.octaves; ++o, weight *= fractal.persistence) {
-    const int f = frequencyOf(fractal, o);
-    const float step = stepOf(fractal, o, static_cast<int>(row.size()));
-    // Each octave in its own plane of the lattice, off the lattice points' zeros.
-    perlin.addRow(row, weight, step, (static_cast<float>(y) + 0.5f) * step,
-                  static_cast<float>(o) * 7.0f + 0.5f, {f, f, 256});
-  }
+// out += scale * (the noise's sum, each octave in its deviations about its mean).
+void add(const NoiseParams& params, glm::ivec3 size, float scale, std::vector<float>& out) {
+  NoiseParams p = params;
+  p.normalisation = Normalisation::kUnitVariance;
+  double squares = 0.0;
+  for (int o = 0; o < p.octaves; ++o) squares += std::pow(p.persistence, 2.0 * o);
+  scale *= static_cast<float>(std::sqrt(squares));  // the normalisation has divided by it
+  std::vector<float> values(out.size());
+  Noise(p).fill(Grid::tile(size), std::span(values));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] += scale * values[i];
 }
 
 }  // namespace
 
-Volume<float> billowVolume(std::uint64_t seed, int n, const Fractal& fractal, float billow) {
+Volume<float> billowVolume(std::uint64_t seed, int n, const Octaves& sum, float billow) {
   Volume<float> volume(n, n, n, 1);
-  const Perlin perlin(hashOf(seed, 1));
-  std::vector<Cellular> cells;
-  cells.reserve(static_cast<std::size_t>(fractal.octaves));
-  for (int o = 0; o < fractal.octaves; ++o)
-    cells.emplace_back(hashOf(seed, 2, o), glm::ivec3(frequencyOf(fractal, o)));
-  parallelFor(static_cast<std::size_t>(n) * n, n, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> distance(n);
-    for (std::size_t row = begin; row < end; ++row) {
-      const int y = static_cast<int>(row % n), z = static_cast<int>(row / n);
-      const std::span<float> out(&volume.at(0, y, z), n);
-      float weight = 1.0f;
-      for (int o = 0; o < fractal.octaves; ++o, weight *= fractal.persistence) {
-        const float step = stepOf(fractal, o, n);
-        const float py = (static_cast<float>(y) + 0.5f) * step, pz = (static_cast<float>(z) + 0.5f) * step;
-        if (billow < 1.0f)
-          perlin.addRow(out, weight * (1.0f - billow) / kPerlinDeviation, step, py, pz,
-                        glm::ivec3(frequencyOf(fractal, o)));
-        if (billow > 0.0f) {
-          cells[o].f1Row(distance, step, py, pz);
-          const float scale = weight * billow / kCellular3Deviation;
-          for (int x = 0; x < n; ++x) out[x] += scale * (kCellular3Mean - distance[x]);
-        }
-      }
-    }
-  });
+  const glm::ivec3 size(n);
+  if (billow < 1.0f) add(paramsOf(Kind::kPerlin, hashOf(seed, 1), 3, sum), size, 1.0f - billow, volume.data);
+  if (billow > 0.0f) add(paramsOf(Kind::kCellular, hashOf(seed, 2), 3, sum), size, -billow, volume.data);
   normalise(volume.data);
   return volume;
 }
 
-Image<float> gaussianMap(std::uint64_t seed, int n, const Fractal& fractal) {
-  const Perlin perlin(seed);
-  Image<float> map =
-      fillMap(n, [&](std::span<float> row, int y) { addGradientRow(row, y, perlin, fractal, 1.0f); });
+Image<float> gaussianMap(std::uint64_t seed, int n, const Octaves& sum) {
+  Image<float> map(n, n, 1);
+  Noise(paramsOf(Kind::kPerlin, seed, 2, sum)).fill(Grid::tile({n, n, 1}), std::span(map.data));
   makeGaussian(map.data);
   return map;
 }
 
-Image<float> gaussianCellMap(std::uint64_t seed, int n, const Fractal& fractal) {
-  const Perlin perlin(hashOf(seed, 1));
-  std::vector<Cellular> cells;
-  for (int o = 0; o < fractal.octaves; ++o) {
-    const int f = frequencyOf(fractal, o);
-    cells.emplace_back(hashOf(seed, 2, o), glm::ivec3(f, f, 1));
-  }
-  Image<float> map = fillMap(n, [&](std::span<float> row, int y) {
-    addGradientRow(row, y, perlin, fractal, 0.35f);
-    std::vector<float> distance(row.size());
-    float weight = 1.0f / kCellular2Deviation;
-    for (int o = 0; o < fractal.octaves; ++o, weight *= fractal.persistence) {
-      const float step = stepOf(fractal, o, n);
-      cells[o].f1Row(distance, step, (static_cast<float>(y) + 0.5f) * step);
-      for (std::size_t x = 0; x < row.size(); ++x) row[x] += weight * (kCellular2Mean - distance[x]);
-    }
-  });
+Image<float> gaussianCellMap(std::uint64_t seed, int n, const Octaves& sum) {
+  Image<float> map(n, n, 1);
+  add(paramsOf(Kind::kPerlin, hashOf(seed, 1), 2, sum), {n, n, 1}, 0.35f, map.data);
+  add(paramsOf(Kind::kCellular, hashOf(seed, 2), 2, sum), {n, n, 1}, -1.0f, map.data);
   makeGaussian(map.data);
   return map;
 }

@@ -1,99 +1,188 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "welkin/noise/perlin.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <glm/common.hpp>
+#include <optional>
 
 #include "welkin/core/random.h"
+#include "welkin/noise/gradient.h"
+#include "welkin/noise/noise.h"
 
 namespace welkin::noise {
 namespace {
 
+NoiseParams published() {
+  NoiseParams p;
+  p.tile = false;
+  p.frequency = glm::dvec3(1.0);
+  p.octaves = 1;
+  p.table = Table::kPublished;
+  return p;
+}
+
+glm::dvec3 somewhere(Random& random, double across) {
+  const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+  return glm::dvec3(x, y, z) * across;
+}
+
 // Values of Perlin's own reference program.
 TEST(Perlin, ReproducesThePublishedValues) {
-  const Perlin perlin;
-  EXPECT_NEAR(perlin(3.14, 42, 7), 0.13691995878400012, 1e-15);
-  EXPECT_NEAR(perlin(-4.20, 10, 6), 0.14208000000000043, 1e-15);
-  EXPECT_DOUBLE_EQ(perlin(0.5, 0.5, 0.5), -0.25);
-  EXPECT_DOUBLE_EQ(perlin(17, -3, 255), 0.0);
+  const Noise noise(published());
+  EXPECT_EQ(noise.sample({3.14, 42, 7}), 0.13691995878400012);
+  EXPECT_EQ(noise.sample({-4.20, 10, 6}), 0.14208000000000043);
+  EXPECT_EQ(noise.sample({0.5, 0.5, 0.5}), -0.25);
+  EXPECT_EQ(noise.sample({17, -3, 255}), 0.0);
 }
 
 TEST(Perlin, IsTheSameFarFromTheOrigin) {
-  const Perlin perlin;
-  // 256 * 2^22 cells away, where floats cannot even count cells.
-  const double far = 256.0 * 4194304.0;
-  EXPECT_NEAR(perlin(3.140625 + far, 42.25 - far, 7.5), perlin(3.140625, 42.25, 7.5), 1e-12);
+  const Noise noise(published());
+  const double far = 256.0 * 4194304.0;  // where floats cannot even count cells
+  EXPECT_NEAR(noise.sample({3.140625 + far, 42.25 - far, 7.5}), noise.sample({3.140625, 42.25, 7.5}), 1e-12);
+  NoiseParams p;
+  p.tile = false;
+  p.frequency = {0.3, 0.7, 0.011};  // no powers of two: products are rounded
+  const Noise here(p);
+  p.offset = {1e9, -1e9, 3e9};
+  const Noise there(p);
+  for (const glm::dvec3 q : {glm::dvec3(0.25, 1.5, 3.75), glm::dvec3(-7.125, 0.5, 100.0)})
+    EXPECT_NEAR(there.sample(q), here.sample(q + p.offset), 1e-12);
 }
 
 TEST(Perlin, HasTheKnownSpread) {
-  const Perlin perlin(7);
-  Random random(1);
-  double sum = 0, squares = 0, greatest = 0;
-  const int n = 200000;
-  for (int i = 0; i < n; ++i) {
-    const double v = perlin(random.uniform() * 256, random.uniform() * 256, random.uniform() * 256);
-    sum += v;
-    squares += v * v;
-    greatest = std::max(greatest, std::abs(v));
-  }
-  EXPECT_NEAR(sum / n, 0.0, 0.01);
-  EXPECT_NEAR(std::sqrt(squares / n), 0.27, 0.01);
-  EXPECT_LT(greatest, 1.04);
+  for (const int dimensions : {2, 3})
+    for (const bool evolving : {false, true}) {
+      NoiseParams p;
+      p.dimensions = dimensions;
+      p.frequency = glm::dvec3(512.0);
+      p.octaves = 1;
+      p.seed = 7;
+      double sum = 0, squares = 0, greatest = 0;
+      const int n = 100000;
+      Random random(1);
+      std::optional<Noise> noise;
+      for (int i = 0; i < n; ++i) {
+        if (evolving && i % 1000 == 0) p.time = 0.00237 * i;
+        if (i % 1000 == 0) noise.emplace(p);
+        const double v = noise->sample(somewhere(random, 1.0));
+        sum += v;
+        squares += v * v;
+        greatest = std::max(greatest, std::abs(v));
+      }
+      const int axes = dimensions + (evolving ? 1 : 0);
+      EXPECT_NEAR(sum / n, 0.0, 0.01);
+      EXPECT_NEAR(std::sqrt(squares / n), GradientLattice::deviation(axes), 0.01);
+      EXPECT_LT(greatest, GradientLattice::bound(axes));
+    }
+  EXPECT_NEAR(GradientLattice::deviation(3), 0.270, 0.0005);
+}
+
+// Nothing of low frequency: over the points of the lattice, and in the mean, the noise is zero.
+TEST(Perlin, IsZeroOnTheLattice) {
+  NoiseParams p;
+  p.frequency = {7, 5, 3};
+  p.octaves = 1;
+  const Noise noise(p);
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(noise.sample({i / 7.0, (i % 5) / 5.0, (i % 3) / 3.0}), 0.0, 1e-14);
 }
 
 TEST(Perlin, TilesWithAnyPeriod) {
-  const Perlin perlin(11);
   Random random(2);
-  for (const glm::ivec3 period : {glm::ivec3(1, 1, 1), glm::ivec3(3, 5, 7), glm::ivec3(300, 257, 511)}) {
-    for (int i = 0; i < 200; ++i) {
-      // Multiples of 1/64, so that adding the period is exact.
-      const float x = static_cast<float>(random.below(64 * period.x)) / 64,
-                  y = static_cast<float>(random.below(64 * period.y)) / 64,
-                  z = static_cast<float>(random.below(64 * period.z)) / 64;
-      const float here = perlin.periodic(x, y, z, period);
-      EXPECT_EQ(here, perlin.periodic(x + static_cast<float>(period.x), y, z, period));
-      EXPECT_EQ(here, perlin.periodic(x, y - static_cast<float>(period.y), z, period));
-      EXPECT_EQ(here, perlin.periodic(x, y, z + static_cast<float>(period.z), period));
+  for (const Kind kind : {Kind::kPerlin, Kind::kCellular, Kind::kDistorted, Kind::kCurl, Kind::kPerlinWorley})
+    for (const glm::dvec3 period : {glm::dvec3(1, 1, 1), glm::dvec3(3, 5, 7), glm::dvec3(300, 257, 511)}) {
+      NoiseParams p;
+      p.kind = kind;
+      p.frequency = period;
+      p.octaves = 2;
+      const Noise noise(p);
+      for (int i = 0; i < 20; ++i) {
+        // Multiples of 1/64, so that adding a tile is exact.
+        const glm::dvec3 q = glm::floor(somewhere(random, 64.0)) / 64.0;
+        for (int c = 0; c < noise.channels(); ++c) {
+          EXPECT_EQ(noise.sample(q, c), noise.sample(q + glm::dvec3(1, 0, 0), c));
+          EXPECT_EQ(noise.sample(q, c), noise.sample(q - glm::dvec3(0, 1, 5), c));
+          EXPECT_EQ(noise.sample(q, c), noise.sample(q + glm::dvec3(1e9, 0, 0), c));
+        }
+      }
+    }
+}
+
+TEST(Perlin, HasTheSlopesOfFiniteDifferences) {
+  Random random(3);
+  for (const bool evolving : {false, true}) {
+    NoiseParams p;
+    p.frequency = {3, 4, 5};
+    p.octaves = 3;
+    if (evolving) p.time = 0.6;
+    const Noise noise(p);
+    const double h = 1e-5;
+    for (int i = 0; i < 100; ++i) {
+      const glm::dvec3 q = somewhere(random, 1.0);
+      const Noise::Slope s = noise.sampleSlope(q);
+      EXPECT_DOUBLE_EQ(s.value, noise.sample(q));
+      for (int a = 0; a < 3; ++a) {
+        glm::dvec3 step(0.0);
+        step[a] = h;
+        EXPECT_NEAR(s.gradient[a], (noise.sample(q + step) - noise.sample(q - step)) / (2 * h), 1e-5);
+      }
     }
   }
 }
 
-TEST(Perlin, HasNoSeamWhereItTiles) {
-  const Perlin perlin(13);
-  // Either side of the border must agree as closely as neighbours do anywhere.
-  const float step = 1.0f / 1024;
-  for (int i = 0; i < 100; ++i) {
-    const float y = 0.37f + static_cast<float>(i) * 0.05f;
-    const float inside = perlin.periodic(5.0f - step, y, 0.3f, {5, 5, 5});
-    const float outside = perlin.periodic(0.0f + step, y, 0.3f, {5, 5, 5});
-    EXPECT_NEAR(inside, outside, 0.01f);
-  }
-}
-
-TEST(Perlin, RowsAreTheSameNoise) {
-  const Perlin perlin(17);
-  for (const glm::ivec3 period :
-       {glm::ivec3(1, 2, 3), glm::ivec3(5, 5, 5), glm::ivec3(40, 40, 40), glm::ivec3(300, 300, 256)}) {
-    std::vector<float> row(128, 0.25f);
-    const float step = static_cast<float>(period.x) / 128.0f;
-    for (const float y : {0.3f, 1.9f})
-      for (const float z : {0.5f, 2.2f}) {
-        std::fill(row.begin(), row.end(), 0.25f);
-        perlin.addRow(row, 3.0f, step, y, z, period);
-        for (int i = 0; i < 128; ++i)
-          EXPECT_NEAR(row[i],
-                      0.25f + 3.0f * perlin.periodic((static_cast<float>(i) + 0.5f) * step, y, z, period),
-                      1e-5f);
+TEST(Curl, IsFreeOfDivergence) {
+  Random random(4);
+  for (const int dimensions : {2, 3}) {
+    NoiseParams p;
+    p.kind = Kind::kCurl;
+    p.dimensions = dimensions;
+    p.frequency = {3, 4, 5};
+    p.octaves = 3;
+    const Noise noise(p);
+    ASSERT_EQ(noise.channels(), dimensions);
+    const double h = 1e-5;
+    for (int i = 0; i < 100; ++i) {
+      const glm::dvec3 q = somewhere(random, 1.0);
+      double divergence = 0.0, size = 0.0;
+      for (int a = 0; a < dimensions; ++a) {
+        glm::dvec3 step(0.0);
+        step[a] = h;
+        const double slope = (noise.sample(q + step, a) - noise.sample(q - step, a)) / (2 * h);
+        divergence += slope;
+        size += std::abs(slope);
       }
+      EXPECT_NEAR(divergence, 0.0, 1e-5 * (1.0 + size));
+    }
   }
 }
 
-TEST(Perlin, SeedsDiffer) {
-  EXPECT_NE(Perlin(1)(0.3, 0.4, 0.5), Perlin(2)(0.3, 0.4, 0.5));
-  EXPECT_EQ(Perlin(1)(0.3, 0.4, 0.5), Perlin(1)(0.3, 0.4, 0.5));
+TEST(Time, IsContinuousAndRepeatsAfterItsPeriod) {
+  for (const Kind kind : {Kind::kPerlin, Kind::kCellular, Kind::kDistorted})
+    for (const int dimensions : {2, 3}) {
+      NoiseParams p;
+      p.kind = kind;
+      p.dimensions = dimensions;
+      p.octaves = 2;
+      p.timePeriod = 4;
+      auto at = [&](double time) {
+        p.time = time;
+        return Noise(p).sample({0.3, 0.4, 0.7});
+      };
+      EXPECT_NEAR(at(1.25), at(1.25 + 1e-7), 1e-5);
+      EXPECT_NEAR(at(4.0 - 1e-7), at(0.0), 1e-5);
+      EXPECT_DOUBLE_EQ(at(0.75), at(4.75));
+      EXPECT_NE(at(0.3), at(1.7));
+    }
+}
+
+TEST(Noise, SeedsDifferAndRepeat) {
+  NoiseParams p;
+  auto at = [&](std::int64_t seed) {
+    p.seed = seed;
+    return Noise(p).sample({0.3, 0.4, 0.7});
+  };
+  EXPECT_NE(at(1), at(2));
+  EXPECT_EQ(at(1), at(1));
 }
 
 }  // namespace

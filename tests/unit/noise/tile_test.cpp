@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "welkin/core/parallel.h"
-#include "welkin/noise/perlin.h"
+#include "welkin/noise/noise.h"
 
 namespace welkin::noise {
 namespace {
@@ -67,15 +67,14 @@ TEST(Tile, MapsTakeEachQuantileOnce) {
 // Ranks keep the order of what was ranked: the unranked sum is larger wherever the map is.
 TEST(Tile, RankingKeepsTheOrder) {
   const int n = 64;
-  const Fractal one{.octaves = 1, .frequency = 5};
+  const Octaves one{.octaves = 1, .frequency = 5};
   const Image<float> map = gaussianMap(11, n, one);
-  const Perlin perlin(11);
+  const Noise perlin({.dimensions = 2, .frequency = {5, 5, 5}, .octaves = 1, .seed = 11});
   std::vector<std::pair<float, float>> pairs;
   for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      auto at = [&](int i) { return (static_cast<float>(i) + 0.5f) * 5.0f / static_cast<float>(n); };
-      pairs.emplace_back(map.at(x, y), perlin.periodic(at(x), at(y), 0.5f, {5, 5, 256}));
-    }
+    for (int x = 0; x < n; ++x)
+      pairs.emplace_back(map.at(x, y),
+                         static_cast<float>(perlin.sample({(x + 0.5) / n, (y + 0.5) / n, 0.0})));
   std::sort(pairs.begin(), pairs.end());
   for (std::size_t i = 1; i < pairs.size(); ++i) EXPECT_GE(pairs[i].second, pairs[i - 1].second - 1e-5f);
 }

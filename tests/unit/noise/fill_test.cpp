@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// The grid fills against the point function, and against themselves: instruction sets, threads, boxes.
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "welkin/core/parallel.h"
+#include "welkin/noise/noise.h"
+
+namespace {
+
+std::atomic<long> gAllocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++gAllocations;
+  void* p = alignment <= alignof(std::max_align_t)
+                ? std::malloc(size)
+                : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+
+}  // namespace
+
+// Replaced for the whole program, to count.
+void* operator new(std::size_t size) {
+  return counted(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace welkin::noise {
+namespace {
+
+struct Case {
+  std::string name;
+  NoiseParams params;
+  Grid grid;
+  double tolerance = 2e-6;
+};
+
+// Every kind, dimension, evolution and way to sum, tiled and not, here and far away.
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const auto add = [&](const std::string& name, NoiseParams p, double tolerance = 2e-6) {
+    for (const int dimensions : {2, 3})
+      for (const bool evolving : {false, true})
+        for (const bool tile : {false, true}) {
+          if (p.table == Table::kPublished && dimensions == 3 && evolving) continue;
+          p.dimensions = dimensions;
+          p.tile = tile;
+          p.frequency = tile ? glm::dvec3(3, 5, 2) : glm::dvec3(0.11, 0.13, 0.3);
+          p.offset = evolving ? glm::dvec3(1e9, -1e9, 0.37) : glm::dvec3(0.0);
+          p.time = evolving ? std::optional<double>(0.4) : std::nullopt;
+          p.seed = 7;
+          const glm::ivec3 size(70, 29, dimensions == 3 ? 13 : 1);
+          all.push_back({name + " " + std::to_string(dimensions) + (evolving ? " evolving" : "") +
+                             (tile ? " tile" : ""),
+                         p, tile ? Grid::tile(size) : Grid{size, glm::dvec3(1.0)}, tolerance});
+        }
+  };
+  for (const Fractal f : {Fractal::kFbm, Fractal::kBillow, Fractal::kRidged}) {
+    const std::string bent = f == Fractal::kFbm ? "" : f == Fractal::kBillow ? " billow" : " ridged";
+    add("perlin" + bent, {.octaves = 3, .fractal = f});
+    add("distorted" + bent, {.kind = Kind::kDistorted, .octaves = 3, .fractal = f}, 8e-6);  // slopes multiply
+  }
+  add("published", {.octaves = 3, .table = Table::kPublished});
+  for (const Feature f : {Feature::kF1, Feature::kF2, Feature::kF2MinusF1}) {
+    add("cells", {.kind = Kind::kCellular, .octaves = 3, .feature = f});
+    add("one cells", {.kind = Kind::kCellular, .octaves = 1, .feature = f});
+  }
+  add("perlin-worley", {.kind = Kind::kPerlinWorley, .octaves = 3});
+  add("curl", {.kind = Kind::kCurl, .octaves = 3}, 6e-6);  // values to 10
+  add("variance", {.octaves = 3, .normalisation = Normalisation::kUnitVariance});
+  // Cells smaller than vectors, and smaller than samples.
+  NoiseParams dense{.kind = Kind::kCellular, .frequency = {9, 9, 9}, .octaves = 1};
+  all.push_back({"dense", dense, Grid::tile({36, 30, 20})});
+  dense.frequency = {40, 40, 40};
+  all.push_back({"tiny", dense, Grid::tile({36, 30, 20})});
+  return all;
+}
+
+template <class T>
+std::vector<T> filled(const Noise& noise, const Grid& grid, const Box& box) {
+  std::vector<T> out(static_cast<std::size_t>(box.size.x) * box.size.y * box.size.z * noise.channels());
+  noise.fill(grid, box, std::span(out));
+  return out;
+}
+template <class T>
+std::vector<T> filled(const Noise& noise, const Grid& grid) {
+  return filled<T>(noise, grid, {glm::ivec3(0), grid.size});
+}
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+std::vector<std::int64_t> targets(bool fused) {
+  std::vector<std::int64_t> all;
+  for (const std::int64_t t : hwy::SupportedAndGeneratedTargets())
+    if (!fused || (t & (HWY_AVX2 | HWY_AVX3 | HWY_NEON)) != 0) all.push_back(t);
+  return all;
+}
+
+TEST(Fill, AgreesWithThePointFunctionOnEveryInstructionSet) {
+  for (const Case& c : cases()) {
+    const Noise noise(c.params);
+    for (const std::int64_t target : targets(false)) {
+      hwy::SetSupportedTargetsForTest(target);
+      const std::vector<float> values = filled<float>(noise, c.grid);
+      const std::size_t channels = static_cast<std::size_t>(noise.channels());
+      double worst = 0.0;
+      for (std::size_t i = 0; i < values.size(); i += 7) {
+        const std::size_t sample = i / channels;
+        const glm::dvec3 place(static_cast<double>(sample % c.grid.size.x),
+                               static_cast<double>(sample / c.grid.size.x % c.grid.size.y),
+                               static_cast<double>(sample / c.grid.size.x / c.grid.size.y));
+        const double v = noise.sample((place + 0.5) * c.grid.spacing, static_cast<int>(i % channels));
+        worst = std::max(worst, std::abs(v - values[i]));
+      }
+      EXPECT_LE(worst, c.tolerance) << c.name << " " << hwy::TargetName(target);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+  }
+}
+
+TEST(Fill, IsTheSameOnEveryInstructionSetThatFuses) {
+  if (targets(true).size() < 2) GTEST_SKIP() << "this processor has one instruction set that fuses";
+  for (const Case& c : cases()) {
+    const Noise noise(c.params);
+    std::vector<std::vector<float>> results;
+    for (const std::int64_t target : targets(true)) {
+      hwy::SetSupportedTargetsForTest(target);
+      results.push_back(filled<float>(noise, c.grid));
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    for (const auto& r : results) EXPECT_TRUE(sameBytes(results[0], r)) << c.name;
+  }
+}
+
+TEST(Fill, IsTheSameForAnyThreadCount) {
+  const int before = threadCount();
+  for (const Case& c : cases()) {
+    const Noise noise(c.params);
+    setThreadCount(1);
+    const auto one = filled<float>(noise, c.grid);
+    setThreadCount(5);
+    EXPECT_TRUE(sameBytes(one, filled<float>(noise, c.grid))) << c.name;
+  }
+  setThreadCount(before);
+}
+
+TEST(Fill, GivesABoxWhatTheWholeHasThere) {
+  for (const Case& c : cases()) {
+    const Noise noise(c.params);
+    const auto whole = filled<float>(noise, c.grid);
+    const bool solid = c.grid.size.z > 1;
+    for (const Box box : {Box{{13, 7, solid ? 5 : 0}, {19, 11, solid ? 6 : 1}},
+                          Box{{0, 9, solid ? 2 : 0}, {c.grid.size.x, 1, 1}}, Box{{35, 28, 0}, {1, 1, 1}}}) {
+      const auto part = filled<float>(noise, c.grid, box);
+      const auto row = static_cast<std::size_t>(box.size.x) * noise.channels();
+      for (int z = 0; z < box.size.z; ++z)
+        for (int y = 0; y < box.size.y; ++y) {
+          const std::size_t from =
+              ((static_cast<std::size_t>(box.first.z + z) * c.grid.size.y + box.first.y + y) * c.grid.size.x +
+               box.first.x) *
+              noise.channels();
+          const std::size_t at = (static_cast<std::size_t>(z) * box.size.y + y) * row;
+          EXPECT_EQ(std::memcmp(&whole[from], &part[at], row * sizeof(float)), 0) << c.name;
+        }
+    }
+  }
+}
+
+// Integers and halves are what the floats round to.
+TEST(Fill, RoundsToEveryFormat) {
+  for (const Normalisation n :
+       {Normalisation::kRaw, Normalisation::kThesis, Normalisation::kUnitRange, Normalisation::kUnitVariance})
+    for (const Kind kind : {Kind::kPerlin, Kind::kCurl, Kind::kCellular}) {
+      NoiseParams p{.kind = kind, .octaves = 3, .amplitude = 0.7, .normalisation = n};
+      const Noise noise(p);
+      const Grid grid = Grid::tile({37, 11, 5});
+      const auto floats = filled<float>(noise, grid);
+      const auto bytes = filled<std::uint8_t>(noise, grid);
+      const auto words = filled<std::uint16_t>(noise, grid);
+      const auto halves = filled<Half>(noise, grid);
+      for (std::size_t i = 0; i < floats.size(); ++i) {
+        const double v = floats[i];
+        const bool isSigned = n == Normalisation::kRaw && kind != Kind::kCellular;
+        const double u = n == Normalisation::kUnitVariance ? 0.5 + v / 8 : isSigned ? (v + 1) / 2 : v;
+        const double clamped = std::min(std::max(u, 0.0), 1.0);
+        EXPECT_NEAR(bytes[i], 255 * clamped, 0.5001);
+        EXPECT_NEAR(words[i], 65535 * clamped, 0.51);
+        // A half's value from its bits; within half of its last bit.
+        const int exponent = halves[i].bits >> 10 & 31;
+        const double fraction = (halves[i].bits & 1023) / 1024.0;
+        const double magnitude =
+            exponent == 0 ? std::ldexp(fraction, -14) : std::ldexp(1.0 + fraction, exponent - 15);
+        const double half = (halves[i].bits & 0x8000) != 0 ? -magnitude : magnitude;
+        EXPECT_LE(std::abs(half - v), std::ldexp(1.0, std::max(exponent, 1) - 15 - 11));
+      }
+    }
+}
+
+TEST(Fill, AgainAllocatesNothing) {
+  const int before = threadCount();
+  setThreadCount(1);
+  for (const Case& c : cases()) {
+    const Noise noise(c.params);
+    std::vector<float> out(static_cast<std::size_t>(c.grid.size.x) * c.grid.size.y * c.grid.size.z *
+                           noise.channels());
+    for (int i = 0; i < 2; ++i) noise.fill(c.grid, std::span(out));
+    const long counted = gAllocations;
+    noise.fill(c.grid, std::span(out));
+    EXPECT_EQ(gAllocations - counted, 0) << c.name;
+  }
+  setThreadCount(before);
+}
+
+}  // namespace
+}  // namespace welkin::noise
