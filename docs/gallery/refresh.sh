@@ -26,3 +26,6 @@ picture thunderstorm_day "$demo/thunderstorm_night.toml" --time 2026-09-26T09:00
 picture in_the_cloud "$here/above_the_clouds.toml" --eye 1700 --size 960x540
 picture between_layers "$here/sunset.toml" --time 2026-06-21T16:00:00Z --eye 3200 --look 260,-4 --size 960x540
 picture dome "$demo/fair_weather_noon.toml" --projection fisheye --size 640x640
+picture thin_golden_hour "$demo/stratocumulus_golden_hour.toml" --technique skyplane --size 960x540
+picture thin_layers "$here/thin_layers.toml" --size 960x540
+"$here/noise.sh" "$program"

@@ -100,7 +100,8 @@ class TreeCheck {
       fail("more nodes than the file can hold");
     for (std::uint32_t i = 0; i < tiles; ++i) {
       origin();
-      file_.skip(sizeof(float) + 1);
+      file_.skip(sizeof(float));
+      if (file_.get<std::uint8_t>() > 1) fail("a tile that is neither active nor inactive");
     }
     for (std::uint32_t i = 0; i < children; ++i) {
       origin();
