@@ -20,7 +20,9 @@ endif()
 # <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
 # common a name to stand in <prefix>/include itself.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/welkin" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin"
-  FILES_MATCHING PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.h"
+  # Compiled once for each instruction set, inside one source; and what asks for a library that users need not have.
+  PATTERN "*-inl.h" EXCLUDE PATTERN "toml_reader.h" EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders/lib" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin/shaders"
   FILES_MATCHING PATTERN "*.glsl")
 
