@@ -169,7 +169,6 @@ class GradientRows {
 
   template <int kAxes>
   HWY_NOINLINE void expandLines(int t, const LineRef* lines, const std::uint32_t* hashes, int count) {
-    const Floats d;
     const Words du;
     const TermTables& term = tables_.term[t];
     constexpr int kPlanes = 1 << (kAxes - 2);

@@ -123,12 +123,13 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
       throw ParameterError("a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
     if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
     const std::vector<scene::Sheet> wanted = scene::sheetsOf(thin, state->weather);
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      sheets.push_back(
-          makeSheet(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM()));
-    std::stable_sort(sheets.begin(), sheets.end(), [](const LiveSheet& a, const LiveSheet& b) {
-      return a.sheet.heightM < b.sheet.heightM;
-    });
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      LiveSheet made = makeSheet(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM());
+      const auto above = std::find_if(sheets.begin(), sheets.end(), [&](const LiveSheet& s) {
+        return s.sheet.heightM > made.sheet.heightM;
+      });
+      sheets.insert(above, std::move(made));
+    }
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }

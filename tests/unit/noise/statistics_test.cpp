@@ -132,8 +132,9 @@ void transform(std::complex<double>* v, int n, int step) {
   for (int k = 0; k < n; ++k) v[static_cast<std::size_t>(k) * step] = out[k];
 }
 
-// Band-limited as far as gradient noise is (R. Cook, T. DeRose 2005, "Wavelet Noise", show how far): the power of an
-// octave lies around the lattice's frequency, little below a quarter of it and hardly any beyond thrice it.
+// Band-limited as far as gradient noise is (R. Cook, T. DeRose 2005, "Wavelet Noise", show how far): the
+// power of an octave lies around the lattice's frequency, little below a quarter of it and hardly any beyond
+// thrice it.
 TEST(Statistics, PerlinNoiseIsBandLimited) {
   const int n = 128, frequency = 16;
   NoiseParams p{.dimensions = 2, .frequency = glm::dvec3(frequency), .octaves = 1};
