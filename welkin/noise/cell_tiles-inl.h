@@ -43,9 +43,9 @@ class CellTiles {
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
     for (auto& q : near_) q = scratch.take<float>(most);
     away_ = scratch.take<float>(most);
-    alongX_ = scratch.take<float>(most * static_cast<std::size_t>(kTileX));
-    alongZ_ = scratch.take<float>(most);
-    for (auto& b : beside_) b = scratch.take<float>(most);
+    alongX_ = scratch.take<float>(most * kTileX);
+    for (float** rows : {&alongY_, &alongZ_, &beside_})
+      *rows = scratch.take<float>((most + kLanes) * kTileMost);
     runs_ = scratch.take<Run>(most / std::size_t{kLanes} + 1);
   }
 
@@ -217,17 +217,19 @@ class CellTiles {
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * std::size_t{kLanes}), most), bits);
       const Run& run = runs_[v];
-      for (unsigned left = bits[0]; left != 0; left &= left - 1) {
-        const int lane = std::countr_zero(left);
-        const std::size_t from = run.from + static_cast<std::size_t>(lane);
-        near_[0][nearCount_] = points_[0][from] + static_cast<float>(run.cell[0] + lane);
-        near_[1][nearCount_] = points_[1][from] + static_cast<float>(run.cell[1]);
-        if (solid) near_[2][nearCount_] = points_[2][from] + static_cast<float>(run.cell[2]);
-        ++nearCount_;
-      }
+      // Without branches, which nobody could predict: all lanes are written, those to keep first.
+      const auto order = hn::SetTableIndices(d, kKeepFirst[bits[0] & ((1 << kLanes) - 1)].data());
+      const auto keep = [&](int a, V plus) HWY_ATTR {
+        const auto place = hn::Add(hn::LoadU(d, points_[a] + run.from), plus);
+        hn::StoreU(hn::TableLookupLanes(place, order), d, near_[a] + nearCount_);
+      };
+      keep(0, hn::Iota(d, static_cast<float>(run.cell[0])));
+      keep(1, hn::Set(d, static_cast<float>(run.cell[1])));
+      if (solid) keep(2, hn::Set(d, static_cast<float>(run.cell[2])));
+      nearCount_ += std::popcount(static_cast<unsigned>(bits[0]));
     }
-    // Far points, so that loops over these may take four at a time.
-    for (; nearCount_ % 4 != 0; ++nearCount_)
+    // Far points, so that loops over these may take two at a time.
+    for (; nearCount_ % 2 != 0; ++nearCount_)
       for (auto& q : near_) q[nearCount_] = kFar;
     return limit;
   }
@@ -349,11 +351,16 @@ class CellTiles {
     const auto move = [&](int q) HWY_ATTR {
       for (float* around : {aroundX_, aroundY_, aroundZ_})
         hn::Store(hn::Load(d, around + q * kLanes), d, around + kept * kLanes);
-      ++kept;
     };
-    for (int q = 0; q < around_; ++q)
-      if (!hn::AllFalse(d, hn::Le(hn::Load(d, least + q * kLanes), most))) move(q);
-    if (kept % 2 != 0) move(kept - 1);
+    for (int q = 0; q < around_; ++q) {
+      const bool keep = !hn::AllFalse(d, hn::Le(hn::Load(d, least + q * kLanes), most));
+      move(q);
+      kept += keep ? 1 : 0;
+    }
+    if (kept % 2 != 0) {
+      move(kept - 1);
+      ++kept;
+    }
     around_ = kept;
   }
 
@@ -429,14 +436,16 @@ class CellTiles {
            p.inside[first(a) + sample];
   }
 
-  // The squares of distances along one axis, from the points that matter to a place.
-  HWY_INLINE void squaresOn(int a, float place, const float* plus, float* out) const {
+  // Squares of the distances on one axis from the points that matter to the samples of the tile: most_ a
+  // sample.
+  HWY_INLINE void squaresOn(int a, int tile, float* out) const {
     const D d;
-    const auto p = hn::Set(d, place);
-    for (int q = 0; q < nearCount_; q += kLanes) {
-      const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
-      hn::Store(plus == nullptr ? hn::Mul(away, away) : hn::MulAdd(away, away, hn::Load(d, plus + q)), d,
-                out + q);
+    for (int i = 0; i < tables_.tile[a]; ++i, out += most_) {
+      const auto p = hn::Set(d, inTile(a, tile + i, tile));
+      for (int q = 0; q < nearCount_; q += kLanes) {
+        const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
+        hn::Store(hn::Mul(away, away), d, out + q);
+      }
     }
   }
 
@@ -458,8 +467,12 @@ class CellTiles {
     const D d;
     const DI di;
     const bool solid = tables_.lattice->axes() == 3;
+    const int rows = tables_.tile[1];
     const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
     auto greatest = hn::Zero(d);
+    most_ = (nearCount_ + kLanes - 1) / kLanes * kLanes;
+    squaresOn(1, y, alongY_);
+    if (solid) squaresOn(2, z, alongZ_);
     for (int i = 0; i < kTileX; i += kLanes) {
       const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
       const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
@@ -467,32 +480,39 @@ class CellTiles {
         const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
         hn::Store(hn::Mul(dx, dx), d, alongX_ + q * kLanes);
       }
-      for (int s = z; s < z + tables_.tile[2]; ++s) {
-        if (solid) squaresOn(2, inTile(2, s, z), nullptr, alongZ_);
-        float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + y) * outStride_ + x + i;
-        for (int r = 0; r < tables_.tile[1]; r += 2, out += std::ptrdiff_t{2} * outStride_) {
-          // Two rows share the loads; a tile of one row has its only one twice.
-          const int other = r + 1 < tables_.tile[1] ? r + 1 : r;
-          squaresOn(1, inTile(1, y + r, y), solid ? alongZ_ : nullptr, beside_[0]);
-          squaresOn(1, inTile(1, y + other, y), solid ? alongZ_ : nullptr, beside_[1]);
-          auto first0 = hn::Set(d, kFar), second0 = first0, first1 = first0, second1 = first0;
-          for (int q = 0; q < nearCount_; q += 4)
-            for (int k = 0; k < 4; ++k) {
-              const auto dx = hn::Load(d, alongX_ + (q + k) * kLanes);
-              const auto square0 = hn::Add(dx, hn::Set(d, beside_[0][q + k]));
-              const auto square1 = hn::Add(dx, hn::Set(d, beside_[1][q + k]));
-              if constexpr (kFeature != Feature::kF1) {
-                second0 = hn::Min(second0, hn::Max(first0, square0));
-                second1 = hn::Min(second1, hn::Max(first1, square1));
+      for (int s = 0; s < tables_.tile[2]; ++s) {
+        const float* HWY_RESTRICT beside = alongY_;
+        if (solid) {
+          // All rows before the first is needed: what is stored as vectors is read number by number.
+          for (int q = 0; q < nearCount_; q += kLanes) {
+            const auto dz = hn::Load(d, alongZ_ + s * most_ + q);
+            for (int r = 0; r < rows; ++r)
+              hn::Store(hn::Add(hn::Load(d, alongY_ + r * most_ + q), dz), d, beside_ + r * most_ + q);
+          }
+          beside = beside_;
+        }
+        float* out = out_ + (static_cast<std::ptrdiff_t>(z + s) * block_.rows + y) * outStride_ + x + i;
+        for (int r = 0; r < rows; r += 4, out += std::ptrdiff_t{4} * outStride_) {
+          // Four rows share the loads; in a tile of fewer some are done in vain.
+          const float* HWY_RESTRICT of[4];
+          for (int k = 0; k < 4; ++k) of[k] = beside + std::min(r + k, rows - 1) * most_;
+          V first[4], second[4];
+          for (int k = 0; k < 4; ++k) first[k] = second[k] = hn::Set(d, kFar);
+          for (int q = 0; q < nearCount_; q += 2)
+            for (int p = q; p < q + 2; ++p) {
+              const auto dx = hn::Load(d, alongX_ + p * kLanes);
+              for (int k = 0; k < 4; ++k) {
+                const auto square = hn::Add(dx, hn::Set(d, of[k][p]));
+                if constexpr (kFeature != Feature::kF1)
+                  second[k] = hn::Min(second[k], hn::Max(first[k], square));
+                first[k] = hn::Min(first[k], square);
               }
-              first0 = hn::Min(first0, square0);
-              first1 = hn::Min(first1, square1);
             }
-          constexpr bool kOne = kFeature == Feature::kF1;
-          greatest = hn::Max(greatest, hn::Max(kOne ? first0 : second0, kOne ? first1 : second1));
-          put<kFeature>(first1, second1, out + static_cast<std::ptrdiff_t>(other - r) * outStride_,
-                        other != r);
-          put<kFeature>(first0, second0, out, true);
+          for (int k = 0; k < 4; ++k) {
+            greatest = hn::Max(greatest, kFeature == Feature::kF1 ? first[k] : second[k]);
+            if (r + k < rows)
+              put<kFeature>(first[k], second[k], out + static_cast<std::ptrdiff_t>(k) * outStride_);
+          }
         }
       }
     }
@@ -500,9 +520,8 @@ class CellTiles {
   }
 
   template <Feature kFeature>
-  HWY_INLINE void put(V first, V second, float* out, bool wanted) const {
+  HWY_INLINE void put(V first, V second, float* out) const {
     const D d;
-    if (!wanted) return;
     auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
     if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
     const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
@@ -519,9 +538,11 @@ class CellTiles {
   float* near_[3];  // the points that matter in the tile, relative to its first cell
   int nearCount_ = 0;
   Run* runs_;
-  float* alongX_;               // squares of distances: of the points to a vector of samples in x,
-  float *alongZ_, *beside_[2];  // to a slice in z, to two rows in y and z
-  float* away_;                 // of each, the square of the distance beside x
+  // Squares of distances of the points that matter: to a vector of samples in x; to the rows in y and the
+  // slices in z, most_ apart; to the rows of a slice in y and z.
+  float *alongX_, *alongY_, *alongZ_, *beside_;
+  std::ptrdiff_t most_ = 0;
+  float* away_;     // of each, the square of the distance beside x
   int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
   HWY_ALIGN float aroundX_[28 * kTileX], aroundY_[28 * kTileX], aroundZ_[28 * kTileX];
   float* out_ = nullptr;

@@ -12,6 +12,7 @@
 // A derivative along an axis puts the derivatives of w and of w d in their places.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -122,6 +123,17 @@ struct GradientTables {
   float bias = 0.0f;             // added to every sum
   Fractal fractal = Fractal::kFbm;
 };
+
+// For each set of a vector's lanes, by bits, these lanes first and in their order.
+inline constexpr std::array<std::array<std::int32_t, 8>, 256> kKeepFirst = [] {
+  std::array<std::array<std::int32_t, 8>, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    std::size_t n = 0;
+    for (int lane = 0; lane < 8; ++lane)
+      if ((bits >> lane & 1u) != 0) table[bits][n++] = lane;
+  }
+  return table;
+}();
 
 // Where samples along an axis lie among the cells of one octave.
 struct CellPlaces {
