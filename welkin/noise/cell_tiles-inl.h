@@ -117,7 +117,7 @@ class CellTiles {
           }
         }
         // What stands behind the row's last cell is no point.
-        for (int i = count_[0]; i < stride_; ++i) points_[0][at + i] = kFar;
+        for (int a = 0; a < lattice.axes(); ++a) std::fill_n(points_[a] + at + count_[0], kTileX, kFar);
       }
   }
 
