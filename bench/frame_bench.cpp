@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame times of thin clouds at 1280x1024, beside the table of G. Tarantilis 2004, and as multiples of a
-// yardstick measured in the same run: one full-screen blended quad with one mipmapped trilinear fetch. The
-// layer fills the view. Prints a Markdown table. Each round measures every case once, so that what else the
-// machine does falls on all alike.
-#include <fmt/format.h>
+#include "bench/frame_bench.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +11,7 @@
 #include "welkin/gpu/draw.h"
 #include "welkin/render/live_sky.h"
 
-namespace welkin {
+namespace welkin::bench {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 1024;
@@ -72,7 +68,7 @@ std::vector<scene::Sheet> dome(scene::SheetTier tier) {
 
 struct Case {
   std::string name;
-  std::string thesis;  // frames a second in 2004
+  std::optional<double> thesisFps;  // of whole frames
   std::function<void()> frame;
   std::vector<double> ms;
 };
@@ -82,7 +78,9 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-int run() {
+}  // namespace
+
+FrameTable measureFrames() {
   gpu::Context context;
   const gpu::Texture2D colour(kWidth, kHeight, {.format = gpu::Format::kRgba8});
   const gpu::Framebuffer target(colour);
@@ -99,13 +97,13 @@ int run() {
   std::vector<std::unique_ptr<render::LiveSky>> skies;
   std::vector<Case> cases;
   cases.push_back({"yardstick Y",
-                   "",
+                   {},
                    [&] {
                      yardstick.bind("uTexture", texture);
                      triangle.draw(yardstick, target, {.blend = gpu::Blend::kOver});
                    },
                    {}});
-  const auto add = [&](const std::string& name, const std::string& thesis,
+  const auto add = [&](const std::string& name, std::optional<double> thesis,
                        const std::vector<scene::Sheet>& sheets, bool backdrop) {
     skies.push_back(std::make_unique<render::LiveSky>());
     render::LiveSky* sky = skies.back().get();
@@ -117,16 +115,16 @@ int run() {
                      {}});
   };
   using scene::SheetTier;
-  add("empty: sky and discs", "83", {}, true);
-  add("one plane, lit", "70", planes(1, SheetTier::kLit), true);
-  add("two planes, lit", "62", planes(2, SheetTier::kLit), true);
-  add("three planes, lit", "59", planes(3, SheetTier::kLit), true);
-  add("dome, embossed", "44", dome(SheetTier::kEmbossed), true);
-  add("plane alone, flat", "", planes(1, SheetTier::kFlat), false);
-  add("plane alone, embossed", "", planes(1, SheetTier::kEmbossed), false);
-  add("plane alone, lit", "", planes(1, SheetTier::kLit), false);
-  add("dome alone, flat (one 3D fetch)", "", dome(SheetTier::kFlat), false);
-  add("dome alone, embossed", "", dome(SheetTier::kEmbossed), false);
+  add("empty: sky and discs", 83.0, {}, true);
+  add("one plane, lit", 70.0, planes(1, SheetTier::kLit), true);
+  add("two planes, lit", 62.0, planes(2, SheetTier::kLit), true);
+  add("three planes, lit", 59.0, planes(3, SheetTier::kLit), true);
+  add("dome, embossed", 44.0, dome(SheetTier::kEmbossed), true);
+  add("plane alone, flat", {}, planes(1, SheetTier::kFlat), false);
+  add("plane alone, embossed", {}, planes(1, SheetTier::kEmbossed), false);
+  add("plane alone, lit", {}, planes(1, SheetTier::kLit), false);
+  add("dome alone, flat (one 3D fetch)", {}, dome(SheetTier::kFlat), false);
+  add("dome alone, embossed", {}, dome(SheetTier::kEmbossed), false);
 
   for (int round = 0; round <= kRounds; ++round)
     for (Case& c : cases) {
@@ -136,23 +134,14 @@ int run() {
       if (round > 0) c.ms.push_back(ms);  // the first compiles
     }
 
+  FrameTable table{context.deviceName(), kWidth, kHeight, kRounds, {}};
   const double y = median(cases[0].ms), empty = median(cases[1].ms);
-  fmt::print("{}, {}x{}, medians of {} rounds\n\n", context.deviceName(), kWidth, kHeight, kRounds);
-  fmt::print("| frame | ms | in Y | frames a second | share of the empty sky's | thesis, 2004 |\n");
-  fmt::print("|---|---:|---:|---:|---:|---:|\n");
   for (const Case& c : cases) {
     const double ms = median(c.ms);
-    const bool whole = !c.thesis.empty();
-    fmt::print("| {} | {:.2f} | {:.2f} | {:.0f} | {} | {} |\n", c.name, ms, ms / y, 1000.0 / ms,
-               whole ? fmt::format("{:.2f}", empty / ms) : "",
-               whole ? fmt::format("{} ({:.2f})", c.thesis, std::atof(c.thesis.c_str()) / 83.0) : "");
+    table.rows.push_back({c.name, ms, ms / y, {}, c.thesisFps});
+    if (c.thesisFps) table.rows.back().share = empty / ms;
   }
-  return 0;
+  return table;
 }
 
-}  // namespace
-}  // namespace welkin
-
-int main() {
-  return welkin::run();
-}
+}  // namespace welkin::bench

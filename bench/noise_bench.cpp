@@ -80,10 +80,13 @@ void fill(benchmark::State& state, const Workload& w, int across) {
   setCounter(state, static_cast<double>(samples));
 }
 
-void add(const Workload& w, std::int64_t target, int threads, int across) {
+// What is measured, in the order of registration.
+using Register = std::vector<NoiseTime>;
+
+void add(Register& all, const Workload& w, std::int64_t target, int threads, int across) {
   const std::string set = target == HWY_AVX3 ? "AVX-512" : hwy::TargetName(target);
-  const std::string name = w.name + "/" + set + "/" + std::to_string(threads) + "/" + std::to_string(across);
-  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+  all.push_back({w.name, set, threads, across, 0.0});
+  benchmark::RegisterBenchmark(std::to_string(all.size() - 1).c_str(), [=](benchmark::State& state) {
     hwy::SetSupportedTargetsForTest(target);
     const int before = threadCount();
     setThreadCount(threads);
@@ -109,23 +112,57 @@ void writeMemory(benchmark::State& state) {
   setCounter(state, kFloats);
 }
 
-}  // namespace
-
-void registerNoiseBenchmarks() {
-  benchmark::RegisterBenchmark("write/float", writeMemory)->UseRealTime();
+Register registerAll() {
+  Register all;
+  all.push_back({"write", "", 1, 256, 0.0});
+  benchmark::RegisterBenchmark("0", writeMemory)->UseRealTime();
   const std::int64_t supported = hwy::SupportedTargets();
   std::vector<std::int64_t> targets;  // best first
   for (const std::int64_t t : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}})
     if ((supported & t) != 0) targets.push_back(t);
   if (targets.empty()) targets.push_back(supported & -supported);
   for (const Workload& w : workloads()) {
-    for (const std::int64_t t : targets) add(w, t, 1, w.size);
-    add(w, targets[0], 2, w.size);
+    for (const std::int64_t t : targets) add(all, w, t, 1, w.size);
+    add(all, w, targets[0], 2, w.size);
   }
   for (const Workload& w : workloads())
     if (w.name == "W1" || w.name == "W4")
       for (const int across : {64, 128, 256, 512})
-        if (across != w.size) add(w, targets[0], 1, across);
+        if (across != w.size) add(all, w, targets[0], 1, across);
+  return all;
+}
+
+// Takes the medians of what Google Benchmark reports.
+class Medians : public benchmark::BenchmarkReporter {
+ public:
+  explicit Medians(Register& all) : all_(all) {}
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median")
+        all_.at(std::stoul(run.run_name.function_name)).nsPerSample = run.counters.at("ns_per_sample").value;
+  }
+
+ private:
+  Register& all_;
+};
+
+}  // namespace
+
+std::vector<NoiseTime> measureNoise(int repetitions) {
+  Register all = registerAll();
+  // Every argument is Google Benchmark's own.
+  std::vector<std::string> flags = {"noise", "--benchmark_min_time=0.1",
+                                    "--benchmark_repetitions=" + std::to_string(repetitions)};
+  std::vector<char*> argv;
+  for (std::string& f : flags) argv.push_back(f.data());
+  int argc = static_cast<int>(argv.size());
+  argv.push_back(nullptr);
+  benchmark::Initialize(&argc, argv.data());
+  Medians medians(all);
+  benchmark::RunSpecifiedBenchmarks(&medians);
+  benchmark::Shutdown();
+  return all;
 }
 
 }  // namespace welkin::bench

@@ -196,11 +196,6 @@ std::vector<std::string> flagNames(const CLI::App* app) {
   return names;
 }
 
-std::string didYouMean(const std::string& word, const std::vector<std::string>& names) {
-  const std::string near = nearestName(word, names);
-  return near.empty() ? "" : "; did you mean " + near + "?";
-}
-
 // CLI11 collects what it does not know (allow_extras); the first such word is the mistake to report.
 void refuseExtras(const CLI::App* app, const std::string& command) {
   const std::vector<std::string> extras = app->remaining();
@@ -269,6 +264,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
       "convert", "Write a picture or volume as another kind of file; nothing is lost unasked");
   describeConvert(convertApp, convert);
 
+  BenchArgs bench;
+  CLI::App* benchApp = root.add_subcommand("bench", "Measure how fast Welkin is on this machine");
+  benchApp->add_option("name", bench.names, "noise, frame; all of them without a name")->type_name("NAME");
+  benchApp->add_flag("--json", bench.json, "as JSON");
+
   Flag topic;
   HelpSceneArgs helpScene;
   CLI::App* helpApp =
@@ -292,8 +292,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
   refuseExtras(&root, "");
   if (chosen.empty())
     throw UsageError(
-        "expected a command: render, metar, sun, info, noise, cloud, convert or help; welkin --help explains "
-        "them");
+        "expected a command: render, metar, sun, info, noise, cloud, convert, bench or help; welkin --help "
+        "explains them");
   refuseExtras(chosen[0], chosen[0]->get_name());
   if (chosen[0] == renderApp) return render;
   if (chosen[0] == metarApp) return metar;
@@ -305,6 +305,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
   if (chosen[0] == noiseApp) return noise;
   if (chosen[0] == cloudApp) return cloud;
   if (chosen[0] == convertApp) return convert;
+  if (chosen[0] == benchApp) return bench;
   if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};
   if (*topic == "scene") return helpScene;
   std::vector<std::string> topics{"scene"};

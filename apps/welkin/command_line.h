@@ -69,6 +69,11 @@ struct ConvertArgs {
   TexelFileFlags file;
 };
 
+struct BenchArgs {
+  std::vector<std::string> names;
+  bool json = false;
+};
+
 // `welkin help scene`; help of commands is PrintText.
 struct HelpSceneArgs {
   bool markdown = false;
@@ -79,7 +84,7 @@ struct PrintText {
 };
 
 using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, NoiseArgs, CloudArgs, ConvertArgs,
-                             HelpSceneArgs, PrintText>;
+                             BenchArgs, HelpSceneArgs, PrintText>;
 
 // Throws UsageError, which names the nearest command or flag for one that does not exist.
 Command parseCommandLine(int argc, const char* const* argv);

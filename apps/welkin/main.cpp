@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 
+#include "bench_command.h"
 #include "cloud_command.h"
 #include "command_line.h"
 #include "convert_command.h"
@@ -38,6 +39,9 @@ int run(const CloudArgs& args) {
 }
 int run(const ConvertArgs& args) {
   return runConvert(args);
+}
+int run(const BenchArgs& args) {
+  return runBench(args);
 }
 int run(const HelpSceneArgs& args) {
   return runHelpScene(args);

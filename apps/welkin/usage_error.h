@@ -3,6 +3,9 @@
 // code 1).
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "welkin/core/error.h"
 
 namespace welkin::app {
@@ -11,5 +14,8 @@ class UsageError : public Error {
  public:
   using Error::Error;
 };
+
+// "; did you mean NAME?" with the nearest of the names, "" where none is near.
+std::string didYouMean(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace welkin::app

@@ -34,6 +34,12 @@ class Help(ProgramTest):
         self.fail_with(2, "--seed", "render", "-o", "x.png", "--seed")
 
 
+class Bench(ProgramTest):
+    # What it measures is no test's business, and takes a minute.
+    def test_mistakes_are_named(self):
+        self.fail_with(2, 'bench: there is no benchmark "nosie"; did you mean noise?', "bench", "nosie")
+
+
 class Sun(ProgramTest):
     def test_json(self):
         j = json.loads(self.succeed("sun", "--place", "51.4779,0,46", "--time", "2026-06-21T12:00:00Z", "--json"))

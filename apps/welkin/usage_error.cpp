@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "usage_error.h"
+
+#include "welkin/scene/toml_reader.h"
+
+namespace welkin::app {
+
+std::string didYouMean(const std::string& word, const std::vector<std::string>& names) {
+  const std::string near = nearestName(word, names);
+  return near.empty() ? "" : "; did you mean " + near + "?";
+}
+
+}  // namespace welkin::app
