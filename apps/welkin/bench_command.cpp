@@ -98,6 +98,7 @@ constexpr std::array<Subject, 2> kSubjects = {{{"noise", noiseJson}, {"frame", f
 
 int runBench(const BenchArgs& args) {
   std::vector<std::string> names;
+  names.reserve(kSubjects.size());
   for (const Subject& s : kSubjects) names.push_back(s.name);
   for (const std::string& name : args.names)
     if (std::find(names.begin(), names.end(), name) == names.end())
