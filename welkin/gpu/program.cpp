@@ -246,10 +246,15 @@ void Program::set(std::string_view name, std::span<const glm::vec4> v) {
   if (!v.empty()) glUniform4fv(locate(name), static_cast<GLsizei>(v.size()), glm::value_ptr(v.front()));
 }
 
-void Program::bind(std::string_view sampler, const Texture& texture) const {
+int Program::unitOf(std::string_view sampler) const {
   const auto it = uniforms_.find(sampler);
-  if (it == uniforms_.end() || it->second.unit < 0) return;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(it->second.unit));
+  return it == uniforms_.end() ? -1 : it->second.unit;
+}
+
+void Program::bind(std::string_view sampler, const Texture& texture) const {
+  const int unit = unitOf(sampler);
+  if (unit < 0) return;
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(texture.target(), texture.id());
   glActiveTexture(GL_TEXTURE0);
 }

@@ -59,6 +59,8 @@ class Program {
 
   // Binds a texture to the unit that the program keeps for this sampler.
   void bind(std::string_view sampler, const Texture& texture) const;
+  // That unit; -1 where the program has no such sampler.
+  int unitOf(std::string_view sampler) const;
 
  private:
   struct Uniform {

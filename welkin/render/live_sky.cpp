@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/sheet_mesh.h"
 #include "welkin/shading/uniforms.h"
@@ -69,6 +71,7 @@ LiveSheet makeSheet(const scene::Sheet& sheet, std::uint64_t seed, double earthR
 
 struct LiveSky::Impl {
   SheetPass sheetPass;
+  FlarePass flarePass;
   gpu::Program backdrop =
       fullscreenProgram("pass/backdrop.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}});
   gpu::FullscreenTriangle triangle;
@@ -83,6 +86,7 @@ struct LiveSky::Impl {
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const LiveSheet& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
+  void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   shading::SheetLook look(const LiveSheet& sheet, const shading::ViewParts& view) const {
     return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
                            state->lights[0].direction, view.pixelRad);
@@ -167,6 +171,20 @@ void LiveSky::Impl::drawSheet(const LiveSheet& sheet, const shading::ViewParts& 
                  scale);
 }
 
+void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target& target,
+                              const LiveOptions& options) {
+  const sky::Body& sun = state->ephemeris.sun;
+  const shading::LensFlare flare =
+      shading::lensFlareOf(view, glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad),
+                           shading::sunlightAt(*state, view.eyeM.z));
+  std::array<FlareSheet, FlarePass::kMaxFlat + FlarePass::kMaxVolumes> before;
+  const std::size_t count = std::min(sheets.size(), before.size());
+  for (std::size_t i = 0; i < count; ++i)
+    before[i] = {&sheets[i].pattern(), sheets[i].sheet.surface, look(sheets[i], view)};
+  flarePass.draw(flare, options.flare, view, state->clouds->earthRadiusM(), std::span(before).first(count),
+                 options.depth, target, options.scale);
+}
+
 void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
   Impl& m = *impl_;
   const gpu::StateGuard guard;
@@ -177,6 +195,7 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
                                     [&](const LiveSheet& s) { return s.sheet.heightM > parts.eyeM.z; });
   for (auto s = m.sheets.end(); s != nearest;) m.drawSheet(*--s, parts, target, options.scale);
   for (auto s = m.sheets.begin(); s != nearest; ++s) m.drawSheet(*s, parts, target, options.scale);
+  if (options.flare > 0.0f) m.drawFlare(parts, target, options);
 }
 
 }  // namespace welkin::render

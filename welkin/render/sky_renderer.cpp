@@ -104,7 +104,8 @@ Picture SkyRenderer::Impl::drawSheets(const scene::SkyState& state, const Progre
   const gpu::Framebuffer target(texture);
   picture.luminance = Image<float>(width, height, 3);
   for (int i = 0; i < samples; ++i) {
-    live->draw(shading::viewOf(state, glm::dvec2(quasiRandom2(i)) - 0.5), target);
+    live->draw(shading::viewOf(state, glm::dvec2(quasiRandom2(i)) - 0.5), target,
+               {.flare = static_cast<float>(state.scene.output.flare)});
     const Image<float> sample = target.readPicture(0, 3);
     for (std::size_t k = 0; k < sample.data.size(); ++k)
       picture.luminance.data[k] += sample.data[k] / static_cast<float>(samples);

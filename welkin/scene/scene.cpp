@@ -52,6 +52,12 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
       o.sunDisc);
+  v.value(
+      {"flare", "",
+       "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; with "
+       "technique plane, skyplane or dome",
+       0, 1},
+      o.flare);
   v.value({"frames", "", "number of pictures in a sequence or video", 1, 1000000}, o.frames);
   v.value({"fps", "1/s", "frames for each second of video", 0.1, 1000}, o.fps);
   v.value({"speed", "", "simulated seconds for each second of video; negative runs backwards", -86400, 86400},
@@ -106,6 +112,8 @@ void validate(const Scene& s) {
   for (const Sheet& sheet : s.sheets) validate(sheet);
   if (!s.sheets.empty() && !drawsSheets(s.technique))
     throw ParameterError("[[sheet]] is drawn with technique plane, skyplane or dome, not beside volumes");
+  if (s.output.flare > 0.0 && !drawsSheets(s.technique))
+    throw ParameterError("output.flare is drawn with technique plane, skyplane or dome, not beside volumes");
 }
 
 bool drawsSheets(Technique technique) {

@@ -125,12 +125,14 @@ TEST_F(LiveSkyTest, AnEngineFindsItsStateAgain) {
 
 TEST_F(LiveSkyTest, DrawsAllocateNothing) {
   LiveSky sky;
-  sky.update(thinScene(), 0.0);
+  const sky::Body sun = scene::lightsAt(thinScene(), 0.0).ephemeris.sun;
+  sky.update(looking(thinScene(), sun.azimuthDeg, sun.elevationDeg), 0.0);
   const shading::View view = shading::viewOf(sky.state());
-  sky.draw(view, target);
+  const LiveOptions options{.flare = 0.01f};
+  sky.draw(view, target, options);
   const long before = gAllocations;
   // Mesa's own allocations are plain malloc.
-  for (int i = 0; i < 3; ++i) sky.draw(view, target);
+  for (int i = 0; i < 3; ++i) sky.draw(view, target, options);
   EXPECT_EQ(gAllocations - before, 0);
 }
 
