@@ -19,13 +19,13 @@ struct Look {
   float radius, share, hollow;
   glm::vec3 tint;
 };
-constexpr Look kGlow = {1.6f, 0.92f, -1.0f, {1.0f, 1.0f, 1.0f}};
+constexpr Look kGlow = {1.6f, 0.86f, -1.0f, {1.0f, 1.0f, 1.0f}};
 constexpr std::array<Look, LensFlare::kGhostsAt.size()> kGhosts = {{
-    {0.11f, 0.011f, 0.25f, {1.0f, 0.86f, 0.70f}},
-    {0.055f, 0.004f, 0.0f, {0.78f, 1.0f, 0.86f}},
-    {0.17f, 0.018f, 0.45f, {0.80f, 0.90f, 1.0f}},
-    {0.08f, 0.007f, 0.0f, {1.0f, 0.82f, 0.95f}},
-    {0.30f, 0.040f, 0.85f, {0.74f, 1.0f, 0.94f}},
+    {0.11f, 0.018f, 0.25f, {1.0f, 0.86f, 0.70f}},
+    {0.055f, 0.007f, 0.0f, {0.78f, 1.0f, 0.86f}},
+    {0.17f, 0.035f, 0.45f, {0.80f, 0.90f, 1.0f}},
+    {0.08f, 0.012f, 0.0f, {1.0f, 0.82f, 0.95f}},
+    {0.30f, 0.068f, 0.85f, {0.74f, 1.0f, 0.94f}},
 }};
 
 FlareSprite spriteOf(const Look& look, glm::vec2 centre, const ViewParts& view,
