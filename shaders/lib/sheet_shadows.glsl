@@ -10,6 +10,7 @@ uniform sampler2D uShadowPattern1;
 uniform sampler2D uShadowPattern2;
 uniform sampler2D uShadowPattern3;
 uniform int uShadowCount;
+uniform float uShadowMean;         // what all other sheets let through, on average
 
 float sheetSunlight(Sheet sheet, sampler2D pattern, vec3 q) {
   if (q.z >= sheet.heightM) return 1.0;
@@ -20,7 +21,7 @@ float sheetSunlight(Sheet sheet, sampler2D pattern, vec3 q) {
 
 // From q, metres from the ground under the eye, z up.
 float sheetsSunlight(vec3 q) {
-  float through = 1.0;
+  float through = uShadowMean;
   if (uShadowCount > 0) through *= sheetSunlight(uShadowSheets[0], uShadowPattern0, q);
   if (uShadowCount > 1) through *= sheetSunlight(uShadowSheets[1], uShadowPattern1, q);
   if (uShadowCount > 2) through *= sheetSunlight(uShadowSheets[2], uShadowPattern2, q);

@@ -16,6 +16,7 @@
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/lens_flare.h"
+#include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/sheet_mesh.h"
 #include "welkin/shading/uniforms.h"
@@ -31,6 +32,8 @@ constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPatter
 struct LiveSheet {
   scene::Sheet sheet;
   shading::SheetMatter matter;
+  shading::LightOnSheet light;
+  float sunThrough = 1.0f;  // mean share of the key light
   gpu::Mesh mesh;
   gpu::Texture2D flat;    // the pattern, or
   gpu::Texture3D volume;  // of a dome
@@ -83,6 +86,7 @@ struct LiveSky::Impl {
   std::vector<LiveSheet> sheets;        // from the ground up
 
   void update(const scene::SkyState& next);
+  void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const LiveSheet& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
@@ -137,10 +141,23 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
+  updateAmbient();
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);
   sheetPass.setSky(sky);
   setUniforms(backdrop, sky);
+}
+
+// The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
+void LiveSky::Impl::updateAmbient() {
+  std::vector<shading::SheetInSky> inSky;
+  for (const LiveSheet& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
+  const shading::LightUnderSheets light = shading::lightUnder(*state, inSky);
+  state->ambient = light.ambient;
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    sheets[i].light = light.sheets[i];
+    sheets[i].sunThrough = light.sunThrough[i];
+  }
 }
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
@@ -155,20 +172,25 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   tables.bind(p);
   clouds->bind(p);
   std::size_t shadows = 0;
+  float others = 1.0f;
   for (const LiveSheet& sheet : sheets) {
-    if (shadows == kMaxShadows || !sheet.flat.id()) continue;
+    if (shadows == kMaxShadows || !sheet.flat.id()) {
+      others *= sheet.sunThrough;
+      continue;
+    }
     setSheet(p, shadowNames[shadows], look(sheet, view));
     p.bind(kShadowPatterns[shadows], sheet.flat);
     ++shadows;
   }
+  p.set("uShadowMean", others);
   p.set("uShadowCount", static_cast<int>(shadows));
   triangle.draw(p, target);
 }
 
 void LiveSky::Impl::drawSheet(const LiveSheet& sheet, const shading::ViewParts& view,
                               const gpu::Target& target, float scale) {
-  sheetPass.draw({&sheet.mesh, &sheet.pattern(), sheet.sheet.tier, look(sheet, view)}, view, tables, target,
-                 scale);
+  sheetPass.draw({&sheet.mesh, &sheet.pattern(), sheet.sheet.tier, look(sheet, view), sheet.light}, view,
+                 tables, target, scale);
 }
 
 void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target& target,

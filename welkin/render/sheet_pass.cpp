@@ -61,6 +61,8 @@ void SheetPass::draw(const SheetDraw& sheet, const shading::ViewParts& view, con
   p.set("uClipFromEnu", view.clipFromEnu);
   p.set("uSunStep", sheet.look.sunStep);
   p.set("uTexelsPerPixel", sheet.look.texelsPerPixel);
+  p.set("uSunOnSheet", sheet.light.sun);
+  p.set("uSkyOnSheet", sheet.light.sky);
   p.set("uScale", scale);
   tables.bind(p);
   p.bind("uPattern", *sheet.pattern);

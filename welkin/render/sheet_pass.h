@@ -8,6 +8,7 @@
 #include "welkin/gpu/mesh.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
@@ -21,6 +22,7 @@ struct SheetDraw {
   const gpu::Texture* pattern;
   scene::SheetTier tier;
   shading::SheetLook look;
+  shading::LightOnSheet light;
 };
 
 class SheetPass {

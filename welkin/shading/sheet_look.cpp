@@ -16,6 +16,7 @@ namespace welkin::shading {
 SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, std::uint64_t seed) {
   SheetMatter matter;
   matter.law = scene::condensationOf(sheet, pattern);
+  matter.quantiles = field::PatternQuantiles(pattern);
   double sum = 0.0, count = 1e-9;
   for (const float p : pattern) {
     const double depth = matter.law.k * std::max(p - matter.law.threshold, 0.0);

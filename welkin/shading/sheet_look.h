@@ -7,6 +7,7 @@
 
 #include "welkin/core/image.h"
 #include "welkin/field/condensation.h"
+#include "welkin/field/pattern_quantiles.h"
 #include "welkin/scene/sheet.h"
 
 namespace welkin::shading {
@@ -24,7 +25,8 @@ struct SheetLook {
 struct SheetMatter {
   field::Condensation law;
   float typicalDepth = 1.0f;
-  glm::dvec3 origin{0.0};  // of the pattern, tiles: each seed its own part
+  field::PatternQuantiles quantiles;  // of its pattern
+  glm::dvec3 origin{0.0};             // of the pattern, tiles: each seed its own part
 };
 SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, std::uint64_t seed);
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/shading/sheet_ambient.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/testing/pictures.h"
+#include "tests/testing/skies.h"
+
+namespace welkin::shading {
+namespace {
+
+using testing::luminanceOf;
+
+// A pattern in which values from 0 to 1 are equally frequent.
+std::vector<float> evenPattern() {
+  std::vector<float> pattern(4096);
+  for (std::size_t i = 0; i < pattern.size(); ++i) pattern[i] = static_cast<float>(i) / 4096.0f;
+  return pattern;
+}
+
+// Covers so many oktas, in them `depth` deep on average.
+SheetMatter layerOf(double oktas, double depth) {
+  SheetMatter matter;
+  matter.quantiles = field::PatternQuantiles(evenPattern());
+  matter.law.threshold = 1.0 - oktas / 8.0;
+  matter.law.k = oktas > 0.0 ? 2.0 * depth / (oktas / 8.0) : 0.0;
+  return matter;
+}
+
+struct Ground {
+  double sky, direct;  // lux
+  double all() const { return sky + direct; }
+};
+// Under layers of cover and depth, from the ground up.
+Ground groundUnder(const scene::SkyState& state, const std::vector<SheetMatter>& layers) {
+  std::vector<SheetInSky> sheets;
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    sheets.push_back({1000.0 + 2000.0 * static_cast<double>(i), &layers[i]});
+  const LightUnderSheets light = lightUnder(state, sheets);
+  double through = 1.0;
+  for (const float t : light.sunThrough) through *= t;
+  const double sine = state.lights[0].direction.z;
+  return {luminanceOf(light.ambient.skyOnGround),
+          luminanceOf(state.lights[0].illuminance * state.atmosphere->transmittanceToSpace(0.0, sine)) *
+              sine * through};
+}
+
+class SheetAmbientTest : public ::testing::Test {
+ protected:
+  const scene::SkyState state = scene::buildSky(testing::clearScene(40.0), 0.0);
+  const Ground clear = groundUnder(state, {});
+};
+
+TEST(SheetTransmittance, LosesNothingWhereThereIsNoCloud) {
+  const SheetTransmittance none = transmittanceOf(0.0, 0.5, 1.0);
+  EXPECT_DOUBLE_EQ(none.direct, 1.0);
+  EXPECT_NEAR(none.diffused, 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(none.sky, 1.0);
+  EXPECT_NEAR(transmittanceOf(layerOf(0.0, 5.0), 0.5).direct, 1.0, 1e-12);
+}
+
+TEST(SheetTransmittance, NeverMakesLight) {
+  for (const double mu : {0.02, 0.1, 0.5, 1.0})
+    for (double depth = 0.01, last = 1.0; depth < 500.0; depth *= 1.5) {
+      const SheetTransmittance t = transmittanceOf(depth, mu, 1.0);
+      EXPECT_LE(t.direct + t.diffused, last + 1e-9) << depth;  // the thicker the darker
+      EXPECT_GE(t.diffused, 0.0);
+      EXPECT_GE(t.sky, 0.0);
+      last = t.direct + t.diffused;
+    }
+  // A deep cloud lets (2/3 + mu) / (3/4 (1 - g) depth) ... through: a tenth of it at ten times the depth.
+  EXPECT_NEAR(transmittanceOf(10000.0, 0.7, 1.0).diffused / transmittanceOf(1000.0, 0.7, 1.0).diffused, 0.1,
+              0.002);
+}
+
+TEST(SheetTransmittance, HidesAtMostItsBias) {
+  const SheetTransmittance t = transmittanceOf(1000.0, 0.7, 0.25);
+  EXPECT_NEAR(t.direct, 0.75, 1e-9);
+  EXPECT_GT(t.sky, 0.75);
+}
+
+TEST_F(SheetAmbientTest, WithoutSheetsItIsTheClearSkys) {
+  EXPECT_NEAR(clear.sky / luminanceOf(state.ambient.skyOnGround), 1.0, 1e-4);
+  EXPECT_EQ(lightUnder(state, {}).ambient.clearAir, 1.0f);
+}
+
+// Broken cloud scatters sunlight down: the sky gives more than a clear one, though the sun gives less.
+TEST_F(SheetAmbientTest, RisesWithPartialCover) {
+  double last = clear.sky;
+  for (const double oktas : {1.0, 2.0, 3.0, 4.0}) {
+    const Ground g = groundUnder(state, {layerOf(oktas, 8.0)});
+    EXPECT_GT(g.sky, last * 1.1) << oktas;
+    EXPECT_LT(g.direct, clear.direct);
+    last = g.sky;
+  }
+}
+
+// Measured by day under overcast: a tenth to a third of the clear sky's light, all of it diffuse.
+TEST_F(SheetAmbientTest, ThickOvercastIsDarkAndGrey) {
+  const Ground g = groundUnder(state, {layerOf(8.0, 60.0)});
+  EXPECT_LT(g.direct, 0.02 * clear.direct);
+  EXPECT_LT(g.all(), 0.33 * clear.all());
+  EXPECT_GT(g.all(), 0.08 * clear.all());
+  EXPECT_LT(groundUnder(state, {layerOf(8.0, 200.0)}).sky, clear.sky);
+  // Sunlight makes up most of it: far from the blue of the clear sky.
+  const SheetMatter layer = layerOf(8.0, 60.0);
+  const SheetInSky sheet{1000.0, &layer};
+  const glm::vec3 grey = lightUnder(state, std::span(&sheet, 1)).ambient.skyOnGround,
+                  blue = state.ambient.skyOnGround;
+  EXPECT_LT(grey.z / grey.x, 0.75f * blue.z / blue.x);
+}
+
+TEST_F(SheetAmbientTest, SheetsAboveDimTheSunForThoseBeneath) {
+  const SheetMatter low = layerOf(4.0, 5.0), high = layerOf(6.0, 2.0);
+  const SheetInSky sheets[] = {{1000.0, &low}, {6000.0, &high}};
+  const LightUnderSheets light = lightUnder(state, sheets);
+  EXPECT_EQ(light.sheets[1].sun, 1.0f);
+  EXPECT_FLOAT_EQ(light.sheets[0].sun, light.sunThrough[1]);
+  EXPECT_LT(light.sheets[0].sun, 0.6f);
+  EXPECT_GT(luminanceOf(light.sheets[0].sky), luminanceOf(light.sheets[1].sky));
+  EXPECT_FLOAT_EQ(light.ambient.clearAir, light.sunThrough[0] * light.sunThrough[1]);
+}
+
+// Snow sends light back to the clouds, which send it down again.
+TEST_F(SheetAmbientTest, OvercastIsBrighterOverSnow) {
+  scene::SkyState snow = state;
+  snow.scene.ground.albedo = glm::dvec3(0.8);
+  EXPECT_GT(groundUnder(snow, {layerOf(8.0, 30.0)}).sky, 1.5 * groundUnder(state, {layerOf(8.0, 30.0)}).sky);
+}
+
+TEST(SheetAmbient, NightStaysDark) {
+  const scene::SkyState night = scene::buildSky(testing::moonlessScene(), 0.0);
+  EXPECT_LT(groundUnder(night, {layerOf(8.0, 10.0)}).sky, 0.01);
+}
+
+}  // namespace
+}  // namespace welkin::shading
