@@ -9,16 +9,15 @@
 #include <utility>
 
 #include "welkin/core/error.h"
-#include "welkin/gpu/mesh.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/render/thin_layer.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
-#include "welkin/shading/sheet_mesh.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin::render {
@@ -27,48 +26,6 @@ namespace {
 constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
-
-// A thin layer with all that it needs on the device.
-struct LiveSheet {
-  scene::Sheet sheet;
-  shading::SheetMatter matter;
-  shading::LightOnSheet light;
-  float sunThrough = 1.0f;  // mean share of the key light
-  gpu::Mesh mesh;
-  gpu::Texture2D flat;    // the pattern, or
-  gpu::Texture3D volume;  // of a dome
-  const gpu::Texture& pattern() const {
-    return flat.id() ? static_cast<const gpu::Texture&>(flat) : static_cast<const gpu::Texture&>(volume);
-  }
-};
-
-LiveSheet makeSheet(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM) {
-  constexpr gpu::TextureOptions kTiling{.format = gpu::Format::kR16F,
-                                        .filter = gpu::Filter::kMipmap,
-                                        .wrapX = gpu::Wrap::kRepeat,
-                                        .wrapY = gpu::Wrap::kRepeat,
-                                        .wrapZ = gpu::Wrap::kRepeat};
-  LiveSheet live;
-  live.sheet = sheet;
-  const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
-  gpu::TextureOptions options = kTiling;
-  if (slopes) options.format = gpu::Format::kRgba16F;
-  if (sheet.surface == scene::SheetSurface::kDome) {
-    const Volume<float> pattern = scene::domePattern(sheet, seed);
-    live.matter = shading::matterOf(sheet, pattern.data, seed);
-    live.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
-    live.volume.makeMipmaps();
-  } else {
-    const Image<float> pattern = scene::flatPattern(sheet, seed);
-    live.matter = shading::matterOf(sheet, pattern.data, seed);
-    live.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern) : pattern, options);
-    live.flat.makeMipmaps();
-  }
-  const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);
-  constexpr std::array<int, 2> kAttributes = {3, 1};
-  live.mesh = gpu::Mesh(mesh.vertices, kAttributes, mesh.indices);
-  return live;
-}
 
 }  // namespace
 
@@ -83,15 +40,15 @@ struct LiveSky::Impl {
 
   std::optional<scene::SkyState> state;
   std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
-  std::vector<LiveSheet> sheets;        // from the ground up
+  std::vector<ThinLayer> sheets;        // from the ground up
 
   void update(const scene::SkyState& next);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
-  void drawSheet(const LiveSheet& sheet, const shading::ViewParts& view, const gpu::Target& target,
+  void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
   void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
-  shading::SheetLook look(const LiveSheet& sheet, const shading::ViewParts& view) const {
+  shading::SheetLook look(const ThinLayer& sheet, const shading::ViewParts& view) const {
     return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
                            state->lights[0].direction, view.pixelRad);
   }
@@ -132,8 +89,9 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
     const std::vector<scene::Sheet> wanted = scene::sheetsOf(thin, state->weather);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      LiveSheet made = makeSheet(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM());
-      const auto above = std::find_if(sheets.begin(), sheets.end(), [&](const LiveSheet& s) {
+      ThinLayer made =
+          makeThinLayer(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM());
+      const auto above = std::find_if(sheets.begin(), sheets.end(), [&](const ThinLayer& s) {
         return s.sheet.heightM > made.sheet.heightM;
       });
       sheets.insert(above, std::move(made));
@@ -151,7 +109,7 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
 void LiveSky::Impl::updateAmbient() {
   std::vector<shading::SheetInSky> inSky;
-  for (const LiveSheet& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
+  for (const ThinLayer& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
   const shading::LightUnderSheets light = shading::lightUnder(*state, inSky);
   state->ambient = light.ambient;
   for (std::size_t i = 0; i < sheets.size(); ++i) {
@@ -173,7 +131,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   clouds->bind(p);
   std::size_t shadows = 0;
   float others = 1.0f;
-  for (const LiveSheet& sheet : sheets) {
+  for (const ThinLayer& sheet : sheets) {
     if (shadows == kMaxShadows || !sheet.flat.id()) {
       others *= sheet.sunThrough;
       continue;
@@ -187,7 +145,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   triangle.draw(p, target);
 }
 
-void LiveSky::Impl::drawSheet(const LiveSheet& sheet, const shading::ViewParts& view,
+void LiveSky::Impl::drawSheet(const ThinLayer& sheet, const shading::ViewParts& view,
                               const gpu::Target& target, float scale) {
   sheetPass.draw({&sheet.mesh, &sheet.pattern(), sheet.sheet.tier, look(sheet, view), sheet.light}, view,
                  tables, target, scale);
@@ -214,7 +172,7 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
   if (options.backdrop) m.drawBackdrop(parts, target, options.scale);
   // Far to near: down to the eye from above, and up to it from below.
   const auto nearest = std::find_if(m.sheets.begin(), m.sheets.end(),
-                                    [&](const LiveSheet& s) { return s.sheet.heightM > parts.eyeM.z; });
+                                    [&](const ThinLayer& s) { return s.sheet.heightM > parts.eyeM.z; });
   for (auto s = m.sheets.end(); s != nearest;) m.drawSheet(*--s, parts, target, options.scale);
   for (auto s = m.sheets.begin(); s != nearest; ++s) m.drawSheet(*s, parts, target, options.scale);
   if (options.flare > 0.0f) m.drawFlare(parts, target, options);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/thin_layer.h"
+
+#include <array>
+
+#include "welkin/shading/sheet_mesh.h"
+
+namespace welkin::render {
+
+ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM) {
+  constexpr gpu::TextureOptions kTiling{.format = gpu::Format::kR16F,
+                                        .filter = gpu::Filter::kMipmap,
+                                        .wrapX = gpu::Wrap::kRepeat,
+                                        .wrapY = gpu::Wrap::kRepeat,
+                                        .wrapZ = gpu::Wrap::kRepeat};
+  ThinLayer layer;
+  layer.sheet = sheet;
+  const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
+  gpu::TextureOptions options = kTiling;
+  if (slopes) options.format = gpu::Format::kRgba16F;
+  if (sheet.surface == scene::SheetSurface::kDome) {
+    const Volume<float> pattern = scene::domePattern(sheet, seed);
+    layer.matter = shading::matterOf(sheet, pattern.data, seed);
+    layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
+    layer.volume.makeMipmaps();
+  } else {
+    const Image<float> pattern = scene::flatPattern(sheet, seed);
+    layer.matter = shading::matterOf(sheet, pattern.data, seed);
+    layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern) : pattern, options);
+    layer.flat.makeMipmaps();
+  }
+  const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);
+  constexpr std::array<int, 2> kAttributes = {3, 1};
+  layer.mesh = gpu::Mesh(mesh.vertices, kAttributes, mesh.indices);
+  return layer;
+}
+
+}  // namespace welkin::render
