@@ -60,9 +60,9 @@ CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfac
   return point;
 }
 
-// Extinction in one go, with the large shapes alone.
-float cloudExtinctionInBand(int band, vec3 q) {
+// Extinction in one go.
+float cloudExtinctionInBand(int band, vec3 q, float detail) {
   CloudSurfaces surfaces;
-  clearanceInBand(band, q, 0.0, surfaces);
-  return cloudsAtSurfaces(band, q, 0.0, surfaces).extinction;
+  clearanceInBand(band, q, detail, surfaces);
+  return cloudsAtSurfaces(band, q, detail, surfaces).extinction;
 }

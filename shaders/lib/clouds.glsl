@@ -61,7 +61,7 @@ WELKIN_FN float cloudSurface(CloudLayer layer, sampler2D placement, vec3 q) {
 // outwards.
 WELKIN_FN float cloudShapeAmount(CloudLayer layer, float s, float h) {
   float amount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
-  return amount * smoothstep(-2.5f * layer.shapeAmount, -0.4f * layer.shapeAmount, s);
+  return amount * smoothstep(-1.8f * layer.shapeAmount, -0.2f * layer.shapeAmount, s);
 }
 
 // Where the noises cannot make cloud, s being cloudSurface there: a distance, metres, within which it stays so (an estimate with a

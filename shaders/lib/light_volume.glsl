@@ -32,21 +32,25 @@ vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
   return textureLod(volume, vec3(uv, w), 0.0);
 }
 
-// dither in [0, 1) picks between cascades near their borders, so that accumulated frames blend them.
-vec4 lightVolumeAt(sampler3D volume, vec3 q, float dither) {
-  float reach = max(abs(q.x), abs(q.y)) * (1.0 + 0.25 * dither);
+// Towards the border of a cascade it is blended with the next.
+vec4 lightVolumeAt(sampler3D volume, vec3 q) {
+  float reach = max(abs(q.x), abs(q.y));
+  float slice = lightVolumeSlice(q.z);
   int cascade = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
-  return lightVolumeTexel(volume, vec2(q), lightVolumeSlice(q.z), cascade);
+  vec4 own = lightVolumeTexel(volume, vec2(q), slice, cascade);
+  float outward = reach / uCascadeHalfM[cascade];
+  if (cascade == kCascades - 1 || outward <= 0.77) return own;
+  return mix(own, lightVolumeTexel(volume, vec2(q), slice, cascade + 1), (outward - 0.77) / 0.19);
 }
 
-CloudDepths cloudDepthsAt(sampler3D volume, vec3 q, float dither) {
-  vec4 v = lightVolumeAt(volume, q, dither);
+CloudDepths cloudDepthsAt(sampler3D volume, vec3 q) {
+  vec4 v = lightVolumeAt(volume, q);
   bool towards = uLineTowardsSun > 0.5;
   return CloudDepths(towards ? v.x : v.z, towards ? v.z : v.x, v.y, v.w);
 }
 
 // Depth towards the sun from anywhere outside the bands too, as for the ground: along the line to the next band, then as stored.
-float cloudDepthToSun(sampler3D volume, vec3 q, float dither) {
+float cloudDepthToSun(sampler3D volume, vec3 q) {
   if (uBandCount == 0 || uLineTowardsSun < 0.5) return 0.0;
   vec3 p = q;
   bool inside = false;
@@ -59,5 +63,5 @@ float cloudDepthToSun(sampler3D volume, vec3 q, float dither) {
     if (nextBase > 1e8) return 0.0;
     p = q + uLine * ((nextBase - q.z) / uLine.z);
   }
-  return lightVolumeAt(volume, p, dither).x;
+  return lightVolumeAt(volume, p).x;
 }

@@ -13,6 +13,8 @@ uniform int uMaxSteps;
 uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
 uniform float uSunReachM;         // how far they reach
 
+const int kSurfaceHalvings = 3;   // of the step in which a surface was met
+
 struct CloudRay {
   vec3 luminance;       // scattered towards the eye, cd/m2
   float transmittance;
@@ -43,20 +45,20 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, vec2 phases, float cosSun, float viewHeight, float dither) {
-  // Towards the sun: first through the point's own density, then through samples of the large shapes at distances that grow
-  // cubically, fine where shadows are sharp; then as the light volume says.
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 phases, float cosSun, float viewHeight, float dither) {
+  // Towards the sun: first through the point's own density, then through samples at distances that grow
+  // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says.
   float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
   float near = point.extinction * done;
   for (int i = 1; i <= uSunSamples; ++i) {
     float x = (float(i) + 1.0) / (float(uSunSamples) + 1.0);
     float end = uSunReachM * x * x * x;
-    float at = mix(done, end, fract(dither + 0.382 * float(i)));
-    near += (end - done) * cloudExtinctionInBand(band, q + uKeyDirection * at);
+    float at = mix(done, end, 0.3 + 0.4 * fract(dither + 0.382 * float(i)));
+    near += (end - done) * cloudExtinctionInBand(band, q + uKeyDirection * at, i == 1 ? detail : 0.0);
     done = end;
   }
-  CloudDepths depths = cloudDepthsAt(uLightVolume, q, dither);
-  depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done, dither).toSun;
+  CloudDepths depths = cloudDepthsAt(uLightVolume, q);
+  depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float phase = mix(phases.x, phases.y, point.ice / point.extinction);
   vec2 shares = cloudSkyShares(depths);
   return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z) +
@@ -73,13 +75,16 @@ struct MarchState {
 };
 
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
-// then light together, however far apart their clouds are.
+// then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
+// free path on: most of what is seen lies there, and the light changes fastest.
 void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
   t += max(uStepNearM, uStepShare * t) * (0.02 + dither.x);
   float lastClear = stretch.x;  // a place in front of the surface
   int fine = 0;                 // short steps to go before stepping far again
+  bool entering = true;         // the next sample in cloud is the first behind a surface
+  float skinStep = 1e9;         // steps grow from the surface on, where most of what is seen lies
   while (state.steps < uMaxSteps && t < stretch.y && state.transmittance > 0.0) {
     vec3 p, q;
     CloudPoint point;
@@ -92,7 +97,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
         ++state.steps;
         p = vec3(0.0, 0.0, uEyeM) + dir * t;
         q = cloudPosition(p, uEarthRadiusM);
-        detail = clamp(2.0 - 12.0 * t * pixelRad / 40.0, 0.0, 1.0);
+        detail = clamp(2.0 - 6.0 * t * pixelRad / 40.0, 0.0, 1.0);
         shortStep = max(uStepNearM, uStepShare * t);
         clearM = clearanceInBand(band, q, detail, surfaces);
         if (clearM < 0.0) break;
@@ -112,6 +117,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
         // under the surface whatever place they began at, and would draw lines of equal depth on it.)
         fine = 2 + int((t - lastClear) / shortStep);
         t = lastClear + shortStep * dither.x;
+        entering = true;
       } else {
         hit = true;
         break;
@@ -119,9 +125,32 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     }
     if (!hit) break;
     fine = max(fine, 2);
-    float through = exp(-point.extinction * shortStep);
+    if (entering) {
+      // The surface lies in the last step.
+      for (int i = 0; i < kSurfaceHalvings; ++i) {
+        float middle = 0.5 * (lastClear + t);
+        CloudSurfaces surfaces;
+        vec3 pm = vec3(0.0, 0.0, uEyeM) + dir * middle;
+        vec3 qm = cloudPosition(pm, uEarthRadiusM);
+        clearanceInBand(band, qm, detail, surfaces);
+        CloudPoint there = cloudsAtSurfaces(band, qm, detail, surfaces);
+        if (there.extinction > 0.0) {
+          t = middle;
+          p = pm;
+          q = qm;
+          point = there;
+        } else {
+          lastClear = middle;
+        }
+      }
+      entering = false;
+      skinStep = 0.5 / point.extinction;
+    }
+    float stepM = min(shortStep, skinStep);
+    skinStep *= 2.0;
+    float through = exp(-point.extinction * stepM);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, phases, cosSun, dir.z, dither.y);
+    state.luminance += share * cloudSource(band, p, q, point, detail, phases, cosSun, dir.z, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
@@ -130,7 +159,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
       state.luminance /= 1.0 - state.transmittance;
       state.transmittance = 0.0;
     }
-    t += shortStep;
+    t += stepM;
   }
 }
 

@@ -23,11 +23,11 @@ void main() {
   float line = 0.0;
   for (int i = 0; i < uSamples; ++i) {
     float t = (float(i) + 0.5) / float(uSamples) * lengthM;
-    line += cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM) + uLine * t);
+    line += cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM) + uLine * t, 0.0);
   }
   line *= lengthM / float(uSamples);
-  float up = 0.5 * rise * (cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.25 * rise)) +
-                           cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.75 * rise)));
+  float up = 0.5 * rise * (cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.25 * rise), 0.0) +
+                           cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.75 * rise), 0.0));
   vec2 shifted = uv + vec2(uLine) * lengthM / uHalfM * 0.5;
   vec2 above = vec2(textureLod(uAbove, shifted, 0.0).x, textureLod(uAbove, uv, 0.0).y);
   outNext = vec4(above + vec2(line, up), 0.0, 0.0);

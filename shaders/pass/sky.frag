@@ -11,7 +11,7 @@
 #include "lib/light_volume.glsl"
 #include "lib/march.glsl"
 
-float groundSunlight(vec2 q, float dither) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0), dither)); }
+float groundSunlight(vec2 q, float dither) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))); }
 
 #include "lib/background.glsl"
 

@@ -52,7 +52,7 @@ bool crossings(glm::vec3 p, glm::vec3 d, double earthRadius, double height, doub
 std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed) {
   auto noise = std::make_shared<CloudNoise>();
   noise->placement = Image<float>(kPlacementSize, kPlacementSize, 3);
-  const noise::Octaves cells{.octaves = 3, .frequency = 12, .lacunarity = 2, .persistence = 0.4f};
+  const noise::Octaves cells{.octaves = 2, .frequency = 12, .lacunarity = 2, .persistence = 0.3f};
   const noise::Octaves fractal{.octaves = 6, .frequency = 8, .lacunarity = 2, .persistence = 0.5f};
   const noise::Octaves patches{.octaves = 4, .frequency = 6, .lacunarity = 2, .persistence = 0.45f};
   const Image<float> maps[3] = {noise::gaussianCellMap(hashOf(seed, 1), kPlacementSize, cells),
