@@ -14,6 +14,7 @@ namespace welkin::render {
 
 std::vector<shading::SheetInSky> SkySheets::inSky() const {
   std::vector<shading::SheetInSky> sheets;
+  sheets.reserve(layers_.size());
   for (const ThinLayer& layer : layers_) sheets.push_back({layer.sheet.heightM, &layer.matter});
   return sheets;
 }
@@ -46,6 +47,7 @@ shading::ShaderDefines SkySheets::defines(const shading::LightVolumeLayout& layo
 void SkySheets::set(gpu::Program& program, const scene::SkyState& state,
                     const shading::LightVolumeLayout& layout) const {
   std::vector<glm::vec4> bandSky;
+  bandSky.reserve(layout.bands.size());
   for (const auto& band : layout.bands)
     bandSky.push_back(
         shading::lightShareUnder(state, inSky(), 0.5 * static_cast<double>(band.baseM + band.topM)));

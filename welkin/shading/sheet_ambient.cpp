@@ -168,7 +168,8 @@ LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetI
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {
   Descent descent(state);
-  for (std::size_t i = sheets.size(); i-- > 0 && sheets[i].heightM > heightM;) descent.pass(sheets[i]);
+  for (std::size_t i = sheets.size(); i > 0 && sheets[i - 1].heightM > heightM; --i)
+    descent.pass(sheets[i - 1]);
   return {descent.skyAt(heightM) / glm::max(clearSky(state.ambient, heightM), glm::vec3(1e-30f)),
           static_cast<float>(descent.direct())};
 }

@@ -25,7 +25,6 @@ std::string layerMember(std::size_t i, const char* member) {
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   std::vector<float> ice(field::kMaxLayers, 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
@@ -43,6 +42,7 @@ Uniforms skyUniforms(const scene::SkyState& state) {
     u.emplace_back(std::string("uAtmosphere.") + name, value);
   });
   u.emplace_back("uEyeM", static_cast<float>(s.camera.eyeM));
+  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   u.emplace_back("uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
   u.emplace_back("uKeyDirection", state.lights[0].direction);
   u.emplace_back("uKeyLightTopM", kKeyLightTopM);
