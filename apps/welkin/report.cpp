@@ -25,6 +25,11 @@ std::string genusName(weather::Genus genus) {
   return std::string(kEnumNames<weather::Genus>[static_cast<std::size_t>(genus)]);
 }
 
+std::string techniqueName(scene::Technique technique) {
+  if (technique == scene::Technique::kAuto) technique = scene::Technique::kVolume;
+  return std::string(kEnumNames<scene::Technique>[static_cast<std::size_t>(technique)]);
+}
+
 Json layersJson(const scene::SkyState& state) {
   Json layers = Json::array();
   for (std::size_t i = 0; i < state.weather.layers.size(); ++i) {
@@ -33,6 +38,7 @@ Json layersJson(const scene::SkyState& state) {
               {"base_m", l.baseM},
               {"top_m", l.topM},
               {"base_assumed", l.baseAssumed},
+              {"technique", techniqueName(scene::techniqueOf(state.scene, l))},
               {"extinction_per_m", l.extinctionPerM},
               {"wind_from_deg", l.windFromDeg},
               {"wind_speed_mps", l.windSpeedMps}};
@@ -40,6 +46,18 @@ Json layersJson(const scene::SkyState& state) {
     layers.push_back(std::move(j));
   }
   return layers;
+}
+
+Json sheetsJson(const scene::SkyState& state) {
+  Json sheets = Json::array();
+  for (std::size_t i = 0; i < state.scene.sheets.size(); ++i) {
+    const scene::Sheet& s = state.scene.sheets[i];
+    Json j = {{"surface", kEnumNames<scene::SheetSurface>[static_cast<std::size_t>(s.surface)]},
+              {"height_m", s.heightM}};
+    if (i < state.sheetCover.size()) j.update(coverJson(state.sheetCover[i]));
+    sheets.push_back(std::move(j));
+  }
+  return sheets;
 }
 
 }  // namespace
@@ -69,6 +87,7 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   j["heading_deg"] = s.headingDeg;
   j["visibility_m"] = s.weather.visibilityM;
   j["layers"] = layersJson(s);
+  j["sheets"] = sheetsJson(s);
   j["sky_cover"] = coverJson(s.skyCover);
   j["notes"] = s.weather.notes;
   j["exposure_ev"] = r.frames.empty() ? Json() : Json(r.frames.front().exposureEv);

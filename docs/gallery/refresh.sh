@@ -28,6 +28,12 @@ picture between_layers "$here/sunset.toml" --time 2026-06-21T16:00:00Z --eye 320
 picture dome "$demo/fair_weather_noon.toml" --projection fisheye --size 640x640
 picture thin_golden_hour "$demo/stratocumulus_golden_hour.toml" --technique skyplane --size 960x540
 picture thin_layers "$here/thin_layers.toml" --size 960x540
+picture thin_dome "$here/thin_layers.toml" --projection fisheye --size 640x640
+picture sheet_shadows "$here/sheet_shadows.toml" --size 960x540
+picture mixed_noon "$here/mixed.toml" --size 960x540
+picture mixed_sunset "$here/mixed.toml" --time 2026-06-21T19:05:00Z --look 285,14 --size 960x540
+picture mixed_between "$here/mixed.toml" --eye 4000 --look 240,2 --size 960x540
+picture mixed_above "$here/mixed.toml" --eye 12000 --look 240,-12 --size 960x540
 picture flare_right "$here/flare.toml" --look 250,16 --size 640x360
 picture flare_high "$here/flare.toml" --look 288,8 --size 640x360
 picture flare_middle "$here/flare.toml" --look 276.3,26.9 --size 640x360

@@ -2,7 +2,12 @@
 // The march: from the eye through the shells of all layers in one go, band by band in the order in which the ray meets them, over
 // the curved earth. The order is compiled in: WELKIN_EACH_BAND_DOWN(CALL) for rays that come down from above (empty for an eye
 // beneath all cloud), then WELKIN_EACH_BAND_UP(CALL).
-// Needs lib/sky_uniforms.glsl before it.
+//
+// With thin layers among them (WELKIN_SHEETS) bands are cut at the sheets' heights, and the order is that of WELKIN_EACH_DOWN(BAND, SHEET),
+// then WELKIN_EACH_UP(BAND, SHEET): BAND(piece, band) and SHEET(sheet, ...) as WELKIN_EACH_SHEET has it. A sheet's place in it is that of its
+// height overhead: exact for sky planes; a plane rises off the curved earth and a dome comes down to the ground, but they keep
+// their place.
+// Needs lib/sky_uniforms.glsl before it, and with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl.
 
 uniform sampler3D uLightVolume;
 uniform DropletPhase uDroplets;
@@ -12,13 +17,21 @@ uniform float uStepLong;          // the longest step through clear air, in thos
 uniform int uMaxSteps;
 uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
 uniform float uSunReachM;         // how far they reach
+#ifdef WELKIN_SHEETS
+uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
+uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
+#endif
 
 const int kSurfaceHalvings = 3;   // of the step in which a surface was met
 
 struct CloudRay {
-  vec3 luminance;       // scattered towards the eye, cd/m2
+  vec3 luminance;       // scattered towards the eye by volumes, cd/m2
   float transmittance;
-  float depthM;         // mean distance of what is seen
+  float depthM;         // mean distance of the volumes that are seen
+#ifdef WELKIN_SHEETS
+  float hidden;         // the share of what is behind that volumes hide
+  vec3 sheets;          // luminance of thin layers as it arrives, air and all
+#endif
 };
 
 // Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.
@@ -61,8 +74,15 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float phase = mix(phases.x, phases.y, point.ice / point.extinction);
   vec2 shares = cloudSkyShares(depths);
+#ifdef WELKIN_SHEETS
+  // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
+  float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
+  return keyLightAt(q.z, p) * (sheets * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z)) +
+         skyAbove(q.z) * vec3(uBandSky[band]) * shares.x + uGroundLight * shares.y;
+#else
   return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z) +
          skyAbove(q.z) * shares.x + uGroundLight * shares.y;
+#endif
 }
 
 // What a march carries along a ray.
@@ -72,6 +92,9 @@ struct MarchState {
   float weightedDepth;
   float weight;
   int steps;
+#ifdef WELKIN_SHEETS
+  vec3 sheets;
+#endif
 };
 
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
@@ -157,16 +180,70 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     if (state.transmittance < 0.01) {
       // What is left would look like what was seen.
       state.luminance /= 1.0 - state.transmittance;
+#ifdef WELKIN_SHEETS
+      state.sheets /= 1.0 - state.transmittance;
+      state.weightedDepth /= 1.0 - state.transmittance;
+      state.weight /= 1.0 - state.transmittance;
+#endif
       state.transmittance = 0.0;
     }
     t += stepM;
   }
 }
 
+#ifdef WELKIN_SHEETS
+// texel: of the sheet's pattern at the hit; way: of it on the way to the sun.
+void addSheet(int i, int tier, SheetHit hit, vec4 texel, vec3 way, vec3 dir, vec2 phases, float cosSun, float dither,
+              inout MarchState state) {
+  float alpha = hit.most - hit.most * exp(-sheetDepth(uSheets[i], texel.x));
+  if (alpha <= 0.0) return;
+  vec3 inscatter, through;
+  aerial(dir, hit.distanceM, inscatter, through);
+  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(hit.p, uEarthRadiusM), dither));
+  vec3 light = sheetLuminance(i, tier, hit, texel, way, sun, phases.x, cosSun, dir.z);
+  state.sheets += state.transmittance * alpha * (light * through + inscatter);
+  state.transmittance *= 1.0 - alpha;
+}
+#endif
+
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
   vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
                      mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
+#ifdef WELKIN_SHEETS
+  MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0, vec3(0.0));
+  vec2 stretch;
+  SheetHit hit;
+  vec4 texel;
+  vec3 way;
+#define WELKIN_MARCH(p, band, up)                            \
+  stretch = bandStretch(vec2(uPieces[p]), up, dir.z);        \
+  stretch.y = min(stretch.y, endM);                          \
+  marchBand(band, stretch, dir, pixelRad, phases, cosSun, dither, state);
+#define WELKIN_MARCH_DOWN(p, band) WELKIN_MARCH(p, band, false)
+#define WELKIN_MARCH_UP(p, band) WELKIN_MARCH(p, band, true)
+#define WELKIN_PATTERN(VECTOR, pattern, i, share, level) \
+  textureLod(pattern, VECTOR(hit.coordinate + share * vec3(uSheetSunStep[i])), level).x
+#define WELKIN_MEET(i, kind, tier, VECTOR, pattern, far)                                                            \
+  hit = meetSheet(i, kind, far, dir, endM, pixelRad);                                                               \
+  if (hit.most > 0.0 && state.transmittance > 0.0) {                                                                \
+    texel = textureGrad(pattern, VECTOR(hit.coordinate), VECTOR(hit.across), VECTOR(hit.along));                    \
+    way = vec3(0.0);                                                                                                \
+    if (tier == 2) {                                                                                                \
+      float level = floor(sheetWayLevel(uSheetRay[i].y * pixelRad, hit.distanceM));                                 \
+      way = vec3(WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.x, level),                                            \
+                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.y, level),                                            \
+                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.z, level));                                           \
+    }                                                                                                               \
+    addSheet(i, tier, hit, texel, way, dir, phases, cosSun, dither.y, state);                                       \
+  }
+#define WELKIN_MEET_DOWN(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, false)
+#define WELKIN_MEET_UP(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, true)
+  WELKIN_EACH_DOWN(WELKIN_MARCH_DOWN, WELKIN_MEET_DOWN)
+  WELKIN_EACH_UP(WELKIN_MARCH_UP, WELKIN_MEET_UP)
+  return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
+                  state.sheets);
+#else
   MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0);
   vec2 stretch;
 #define WELKIN_MARCH_DOWN(i)                                \
@@ -180,4 +257,5 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   WELKIN_EACH_BAND_DOWN(WELKIN_MARCH_DOWN)
   WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0);
+#endif
 }

@@ -3,6 +3,7 @@
 // back: past the horizon, past what an engine has drawn, through the sheets, at points of the sun's disc.
 
 #include "lib/sheet.glsl"
+#include "lib/sheet_surface.glsl"
 
 const int kMaxSprites = 6;
 const int kMaxFlat = 6;
@@ -22,7 +23,7 @@ uniform float uEarthRadiusM;
 
 uniform int uFlatCount;
 uniform Sheet uFlat[kMaxFlat];
-uniform vec4 uFlatSurface[kMaxFlat];       // see surfaceDistance; w: where it ends, m from the zenith
+uniform vec4 uFlatSurface[kMaxFlat];       // shapes of lib/sheet_surface.glsl
 uniform sampler2D uFlatPattern0;
 uniform sampler2D uFlatPattern1;
 uniform sampler2D uFlatPattern2;
@@ -42,14 +43,9 @@ uniform float uFarDepth;                   // what it holds where there is nothi
 out vec2 vCorner;
 out vec4 vLight;
 
-// To the ellipsoid of a sheet from the eye inside it: heights times s.x, it is a sphere about a centre s.y below the ground, through
-// s.z above it. Less than 0: it is beneath the eye.
-float surfaceDistance(vec4 s, vec3 dir) {
-  vec3 d = vec3(dir.x, dir.y, s.x * dir.z);
-  float eye = s.x * uEyeM;
-  float b = (s.y + eye) * d.z;
-  float c = (s.z - eye) * (2.0 * s.y + s.z + eye);
-  return c < 0.0 ? -1.0 : c / (b + sqrt(b * b + dot(d, d) * c) + 1e-6);
+// To a sheet from beneath it; less than 0: it is beneath the eye.
+float surfaceDistance(vec4 shape, vec3 dir) {
+  return shape.x * uEyeM > shape.z ? -1.0 : sheetCrossings(shape, uEyeM, dir).y;
 }
 
 // Of what stands behind a sheet, as the sheet is drawn.

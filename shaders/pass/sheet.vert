@@ -7,6 +7,7 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"
 #include "lib/sheet.glsl"
+#include "lib/sheet_light.glsl"
 
 layout(location = 0) in vec3 iPositionM;  // from the ground under the eye, z up
 layout(location = 1) in float iAlpha;     // 0 at the rim
@@ -33,12 +34,6 @@ out vec3 vAround;                         // radiance from all other directions,
 out vec4 vDirection;                      // from the eye; not normalised; w: level of the pattern's mipmaps
 #endif
 
-// Luminance of cloud at an optical depth towards the sun.
-vec3 sheetLight(float toSun, vec3 key, vec3 around, float phase, float cosSun, float viewHeight) {
-  CloudDepths d = CloudDepths(toSun, uSheet.typicalDepth, 0.5 * uSheet.typicalDepth, 0.5 * uSheet.typicalDepth);
-  return key * cloudSunSource(d, phase, cosSun, viewHeight, max(uKeyDirection.z, 0.0)) + around;
-}
-
 void main() {
   vec3 p = iPositionM - vec3(0.0, 0.0, uEyeM);
   float distanceM = length(p);
@@ -52,20 +47,18 @@ void main() {
   inscatter *= uScale;
   through *= uScale;
 
-  CloudDepths d = CloudDepths(0.0, 0.0, 0.5 * uSheet.typicalDepth, 0.5 * uSheet.typicalDepth);
-  vec2 shares = cloudSkyShares(d);
-  vec3 around = (uSkyOnSheet * shares.x + uGroundLight * shares.y) * through;
+  vec3 around = sheetAround(uSheet, uSkyOnSheet, uGroundLight) * through;
   vec3 key = uSunOnSheet * keyLightAt(uSheet.heightM, iPositionM) * through;
 #if WELKIN_TIER == 2
   vInscatter = inscatter;
   vKey = key;
   vAround = around;
-  vDirection = vec4(p, log2(max(uTexelsPerPixel * distanceM, 1.0)));
+  vDirection = vec4(p, sheetWayLevel(uTexelsPerPixel, distanceM));
 #else
   float cosSun = dot(dir, uKeyDirection);
   float phase = phaseDroplet(cosSun, uDroplets);
-  vec3 sunny = sheetLight(0.1 * uSheet.typicalDepth, key, around, phase, cosSun, dir.z) + inscatter;
-  vec3 shade = sheetLight(uSheet.typicalDepth, key, around, phase, cosSun, dir.z) + inscatter;
+  vec3 sunny = sheetSide(uSheet, true, key, around, phase, cosSun, dir.z, uKeyDirection.z) + inscatter;
+  vec3 shade = sheetSide(uSheet, false, key, around, phase, cosSun, dir.z, uKeyDirection.z) + inscatter;
 #if WELKIN_TIER == 0
   vLight = 0.5 * (sunny + shade);
 #else

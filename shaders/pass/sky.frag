@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sub-frame of the whole picture: sky, discs, ground, and one march through all layers of cloud. Sub-frames differ in their
+// One sub-frame of the whole picture: sky, discs, ground, and one march through all layers of cloud, with the thin ones among them
+// (WELKIN_SHEETS). WELKIN_TRANSMITTANCE: not a picture, but what arrives through them all. Sub-frames differ in their
 // place within the pixel and along the ray; their mean converges to the still. Alpha counts them.
 
 #include "lib/projection.glsl"
@@ -9,9 +10,22 @@
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
+#ifdef WELKIN_SHEETS
+#include "lib/sheet.glsl"
+#include "lib/sheet_surface.glsl"
+#include "lib/sheet_light.glsl"
+#include "lib/sheet_ray.glsl"
+#include "lib/sheet_shadows.glsl"
+#endif
 #include "lib/march.glsl"
 
+#ifdef WELKIN_SHEETS
+float groundSunlight(vec2 q, float dither) {
+  return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))) * sheetsSunlight(vec3(q, 0.0));
+}
+#else
 float groundSunlight(vec2 q, float dither) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))); }
+#endif
 
 #include "lib/background.glsl"
 
@@ -37,12 +51,25 @@ void main() {
   vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
+#ifdef WELKIN_TRANSMITTANCE
+  outColor = vec4(vec3(groundM < 1e8 ? 0.0 : ray.transmittance), 1.0);
+  return;
+#endif
   vec3 color = vec3(0.0);
   if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad, dither.y);
+#ifdef WELKIN_SHEETS
+  color += ray.sheets;
+  if (ray.hidden > 0.0001) {
+    vec3 inscatter, through;
+    aerial(dir, ray.depthM, inscatter, through);
+    color += ray.luminance * through + inscatter * ray.hidden;
+  }
+#else
   if (ray.transmittance < 0.9999) {
     vec3 inscatter, through;
     aerial(dir, ray.depthM, inscatter, through);
     color += ray.luminance * through + inscatter * (1.0 - ray.transmittance);
   }
+#endif
   outColor = vec4(color, 1.0);
 }

@@ -23,20 +23,6 @@ gpu::Mesh quads() {
   return gpu::Mesh(vertices, kAttributes, indices);
 }
 
-// The meshes of shading/sheet_mesh.h as pass/flare.vert's surfaceDistance takes them.
-glm::vec4 surfaceOf(const FlareSheet& sheet, double earthRadiusM) {
-  const float h = sheet.look.heightM, far = 1e9f;
-  switch (sheet.surface) {
-    case scene::SheetSurface::kPlane:
-      return {1.0f, far, h, 20.0f * h};
-    case scene::SheetSurface::kSkyPlane:
-      return {1.0f, static_cast<float>(earthRadiusM), h, far};
-    case scene::SheetSurface::kDome:
-      break;
-  }
-  return {10.0f, 0.0f, 10.0f * h, far};
-}
-
 }  // namespace
 
 FlarePass::Slots FlarePass::slotsOf(const std::string& name) {
@@ -54,7 +40,7 @@ FlarePass::FlarePass()
                                  shading::assembleShader("pass/flare.frag", shading::ShaderDialect::kGl330))),
       quads_(quads()) {}
 
-void FlarePass::setSheets(const Slots& slots, bool volumes, std::size_t most, double earthRadiusM,
+void FlarePass::setSheets(const Slots& slots, bool volumes, std::size_t most,
                           std::span<const FlareSheet> sheets) {
   std::array<glm::vec4, kMaxFlat> surfaces{};
   std::size_t n = 0;
@@ -62,7 +48,7 @@ void FlarePass::setSheets(const Slots& slots, bool volumes, std::size_t most, do
     if ((sheet.pattern->depth() > 1) != volumes || n == most) continue;
     setSheet(program_, slots.sheets[n], sheet.look);
     program_.bind(slots.patterns[n], *sheet.pattern);
-    surfaces[n++] = surfaceOf(sheet, earthRadiusM);
+    surfaces[n++] = sheet.shape;
   }
   program_.set(slots.count, static_cast<int>(n));
   program_.set(slots.surfaces, std::span<const glm::vec4>(surfaces).first(most));
@@ -88,8 +74,8 @@ void FlarePass::draw(const shading::LensFlare& flare, float strength, const shad
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(earthRadiusM));
   p.set("uScale", scale);
-  setSheets(flat_, false, kMaxFlat, earthRadiusM, sheets);
-  setSheets(volumes_, true, kMaxVolumes, earthRadiusM, sheets);
+  setSheets(flat_, false, kMaxFlat, sheets);
+  setSheets(volumes_, true, kMaxVolumes, sheets);
   p.set("uHasDepth", depth.texture ? 1.0f : 0.0f);
   p.set("uFarDepth", depth.reversed ? 0.0f : 1.0f);
   const gpu::TexelReader::Binding binding(depthReader_, p, "uDepth", depth.texture);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <glm/vec4.hpp>
 #include <span>
 #include <string>
 
@@ -12,7 +13,6 @@
 #include "welkin/gpu/texel_reader.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/sheet_pass.h"
-#include "welkin/scene/sheet.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/view.h"
@@ -29,7 +29,7 @@ struct EngineDepth {
 // A sheet that may stand before the sun.
 struct FlareSheet {
   const gpu::Texture* pattern = nullptr;  // as SheetDraw has it
-  scene::SheetSurface surface = scene::SheetSurface::kSkyPlane;
+  glm::vec4 shape{0.0f};                  // shading::shapeOf
   shading::SheetLook look;
 };
 
@@ -54,8 +54,7 @@ class FlarePass {
     std::array<std::string, kMaxFlat> patterns;
   };
   static Slots slotsOf(const std::string& name);
-  void setSheets(const Slots& slots, bool volumes, std::size_t most, double earthRadiusM,
-                 std::span<const FlareSheet> sheets);
+  void setSheets(const Slots& slots, bool volumes, std::size_t most, std::span<const FlareSheet> sheets);
 
   gpu::Program program_;
   gpu::Mesh quads_;

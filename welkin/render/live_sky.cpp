@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
@@ -18,6 +17,7 @@
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
+#include "welkin/shading/sheet_mesh.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin::render {
@@ -84,18 +84,12 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
   if (!same) {
     sheets.clear();
     scene::Scene thin = state->scene;
-    if (thin.technique == scene::Technique::kVolume)
-      throw ParameterError("a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
+    for (const weather::Layer& layer : state->weather.layers)
+      if (scene::techniqueOf(thin, layer) == scene::Technique::kVolume)
+        throw ParameterError(
+            "a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
     if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
-    const std::vector<scene::Sheet> wanted = scene::sheetsOf(thin, state->weather);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      ThinLayer made =
-          makeThinLayer(wanted[i], scene::sheetSeed(state->scene, i), state->clouds->earthRadiusM());
-      const auto above = std::find_if(sheets.begin(), sheets.end(), [&](const ThinLayer& s) {
-        return s.sheet.heightM > made.sheet.heightM;
-      });
-      sheets.insert(above, std::move(made));
-    }
+    sheets = makeThinLayers(thin, state->weather, state->clouds->earthRadiusM());
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
@@ -160,7 +154,9 @@ void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target&
   std::array<FlareSheet, FlarePass::kMaxFlat + FlarePass::kMaxVolumes> before;
   const std::size_t count = std::min(sheets.size(), before.size());
   for (std::size_t i = 0; i < count; ++i)
-    before[i] = {&sheets[i].pattern(), sheets[i].sheet.surface, look(sheets[i], view)};
+    before[i] = {&sheets[i].pattern(),
+                 shading::shapeOf(sheets[i].sheet, state->clouds->earthRadiusM(), view.eyeM.z).shape,
+                 look(sheets[i], view)};
   flarePass.draw(flare, options.flare, view, state->clouds->earthRadiusM(), std::span(before).first(count),
                  options.depth, target, options.scale);
 }

@@ -39,7 +39,7 @@ class LiveSky {
 
   // The sky `secondsAfter` the scene's time. Its sheets are the scene's, and its layers of cloud as sheets on
   // the surface that the scene's technique names (auto: the sky plane). Throws as buildSky does, and
-  // ParameterError for the technique volume.
+  // ParameterError where a layer's technique is volume.
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);

@@ -6,17 +6,22 @@
 #include <optional>
 
 #include "welkin/core/error.h"
+#include "welkin/core/units.h"
+#include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/draw.h"
 #include "welkin/gpu/framebuffer.h"
 #include "welkin/render/accumulation.h"
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/display.h"
+#include "welkin/render/flare_pass.h"
 #include "welkin/render/light_volume_pass.h"
-#include "welkin/render/live_sky.h"
 #include "welkin/render/programs.h"
+#include "welkin/render/sky_sheets.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/shading/lens_flare.h"
 #include "welkin/shading/uniforms.h"
+#include "welkin/shading/view.h"
 
 namespace welkin::render {
 namespace {
@@ -54,11 +59,17 @@ struct SkyRenderer::Impl {
   SkyTextures tables;
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
+  SkySheets sheets;
+  std::optional<FlarePass> flare;
   gpu::Texture2D sum;  // of sub-frames
-  std::optional<LiveSky> live;
 
-  Picture drawVolumes(const scene::SkyState& state, const Progress& progress);
-  Picture drawSheets(const scene::SkyState& state, const Progress& progress);
+  Picture draw(const scene::SkyState& state, const Progress& progress);
+  gpu::Program& programFor(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
+                           const shading::MarchSettings& settings, bool transmittance);
+  void bind(gpu::Program& program);
+  float sunArriving(const scene::SkyState& state, const shading::LightVolumeLayout& layout);
+  void addFlare(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
+                Image<float>& picture);
 };
 
 SkyRenderer::SkyRenderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -81,43 +92,38 @@ std::vector<std::string> SkyRenderer::takeErrors() {
 
 Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
   impl_->context.makeCurrent();
-  if (scene::drawsSheets(state.scene.technique)) return impl_->drawSheets(state, progress);
-  return impl_->drawVolumes(state, progress);
+  impl_->sheets.update(state);
+  if (impl_->sheets.empty()) return impl_->draw(state, progress);
+  scene::SkyState under = state;
+  under.ambient = impl_->sheets.ambient();
+  return impl_->draw(under, progress);
 }
 
-Picture SkyRenderer::Impl::drawSheets(const scene::SkyState& state, const Progress& progress) {
-  if (state.scene.camera.projection != scene::Projection::kPerspective)
-    throw ParameterError(
-        "thin sheets are drawn in perspective alone; expected projection perspective, or technique volume");
-  Picture picture;
-  gpu::Stopwatch watch;
-  auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
-  const int width = static_cast<int>(state.scene.output.width),
-            height = static_cast<int>(state.scene.output.height);
-  if (!live) live.emplace();
-  live->update(state);
-  done("tables");
-
-  // Edges of clouds are soft and textures filtered: a few samples a pixel are enough.
-  const int samples = std::min(shading::marchSettings(state.scene.output.quality).subframes, 16);
-  const gpu::Texture2D texture(width, height, {.format = gpu::Format::kRgba32F});
-  const gpu::Framebuffer target(texture);
-  picture.luminance = Image<float>(width, height, 3);
-  for (int i = 0; i < samples; ++i) {
-    live->draw(shading::viewOf(state, glm::dvec2(quasiRandom2(i)) - 0.5), target,
-               {.flare = static_cast<float>(state.scene.output.flare)});
-    const Image<float> sample = target.readPicture(0, 3);
-    for (std::size_t k = 0; k < sample.data.size(); ++k)
-      picture.luminance.data[k] += sample.data[k] / static_cast<float>(samples);
-    if (progress) progress((i + 1.0) / samples);
-  }
-  done("sheets");
-  picture.autoExposureEv = automaticExposureEv(picture.luminance);
-  done("exposure");
-  return picture;
+// transmittance: what arrives through all clouds, and not a picture.
+gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
+                                            const shading::LightVolumeLayout& layout,
+                                            const shading::MarchSettings& settings, bool transmittance) {
+  const double eyeM = state.scene.camera.eyeM;
+  shading::ShaderDefines defines =
+      sheets.empty() ? shading::marchDefines(layout, eyeM) : sheets.defines(layout, eyeM);
+  if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
+  gpu::Program& p = sky.with(defines);
+  setUniforms(p, shading::cloudUniforms(state));
+  setUniforms(p, shading::skyUniforms(state));
+  setUniforms(p, shading::marchUniforms(settings));
+  setUniforms(p, shading::lightVolumeUniforms(layout));
+  if (!sheets.empty()) sheets.set(p, state, layout);
+  return p;
 }
 
-Picture SkyRenderer::Impl::drawVolumes(const scene::SkyState& state, const Progress& progress) {
+void SkyRenderer::Impl::bind(gpu::Program& p) {
+  clouds->bind(p);
+  tables.bind(p);
+  p.bind("uLightVolume", lightVolume.volume());
+  sheets.bind(p);
+}
+
+Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& progress) {
   Picture picture;
   gpu::Stopwatch watch;
   auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
@@ -132,17 +138,13 @@ Picture SkyRenderer::Impl::drawVolumes(const scene::SkyState& state, const Progr
   lightVolume.draw(state, layout, *clouds);
   done("light volume");
 
-  const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  gpu::Program& p = sky.with(shading::marchDefines(layout, state.scene.camera.eyeM));
-  done("compile");
-  setUniforms(p, shading::cloudUniforms(state));
-  setUniforms(p, shading::skyUniforms(state));
-  setUniforms(p, shading::marchUniforms(settings));
+  shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
+  // Sheets alone have no grain for the resolve to take out.
+  if (!sheets.empty() && layout.bands.empty()) settings.noise = 1e-4f;
+  gpu::Program& p = programFor(state, layout, settings, false);
   setUniforms(p, shading::projectorUniforms(state));
-  setUniforms(p, shading::lightVolumeUniforms(layout));
-  clouds->bind(p);
-  tables.bind(p);
-  p.bind("uLightVolume", lightVolume.volume());
+  bind(p);
+  done("compile");
 
   if (sum.width() != width || sum.height() != height)
     sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
@@ -166,9 +168,69 @@ Picture SkyRenderer::Impl::drawVolumes(const scene::SkyState& state, const Progr
   done("march");
 
   picture.luminance = resolve(target.readPicture(), settings.noise);
+  if (state.scene.output.flare > 0.0) {
+    addFlare(state, layout, picture.luminance);
+    done("flare");
+  }
   picture.autoExposureEv = automaticExposureEv(picture.luminance);
   done("read back");
   return picture;
+}
+
+// Share of the sun's light that arrives through all clouds, mean over its disc; 0 where the ground hides it.
+float SkyRenderer::Impl::sunArriving(const scene::SkyState& state, const shading::LightVolumeLayout& layout) {
+  constexpr int kSide = 24, kSubframes = 4;
+  const sky::Body& sun = state.ephemeris.sun;
+  scene::SkyState toSun = state;
+  scene::Camera& camera = toSun.scene.camera;
+  camera.projection = scene::Projection::kPerspective;
+  camera.pitchDeg = sun.elevationDeg;
+  camera.fovDeg = 2.0 * degrees(sun.angularRadiusRad);
+  toSun.headingDeg = sun.azimuthDeg;
+  toSun.scene.output.width = toSun.scene.output.height = kSide;
+
+  // No picture shows the disc's grain, but steps as wide as in the picture would miss its thin clouds.
+  gpu::Program& p = programFor(toSun, layout, shading::marchSettings(scene::Quality::kHigh), true);
+  setUniforms(p, shading::projectorUniforms(toSun));
+  bind(p);
+  const gpu::Texture2D texture(kSide, kSide, {.format = gpu::Format::kRgba32F});
+  const gpu::Framebuffer target(texture);
+  target.clear();
+  for (int i = 0; i < kSubframes; ++i) {
+    p.set("uJitterPx", quasiRandom2(i) - 0.5f);
+    p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
+    triangle.draw(p, target, {.blend = gpu::Blend::kAdd});
+  }
+  const Image<float> shares = target.readPicture();
+  double arriving = 0.0, count = 0.0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const double u = (x + 0.5) / kSide - 0.5, v = (y + 0.5) / kSide - 0.5;
+      if (u * u + v * v > 0.25) continue;
+      arriving += shares.at(x, y, 0);
+      count += shares.at(x, y, 3);
+    }
+  return static_cast<float>(arriving / count);
+}
+
+void SkyRenderer::Impl::addFlare(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
+                                 Image<float>& picture) {
+  const double eyeM = state.scene.camera.eyeM;
+  const sky::Body& sun = state.ephemeris.sun;
+  const shading::ViewParts view = shading::partsOf(shading::viewOf(state), picture.height);
+  const shading::LensFlare lens =
+      shading::lensFlareOf(view, glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad),
+                           shading::sunlightAt(state, eyeM));
+  if (lens.shown <= 0.0f) return;
+  const float strength = static_cast<float>(state.scene.output.flare) * sunArriving(state, layout);
+  if (strength <= 0.0f) return;
+  if (!flare) flare.emplace();
+  const gpu::Texture2D texture(picture.width, picture.height, {.format = gpu::Format::kRgba32F});
+  const gpu::Framebuffer target(texture);
+  target.clear();
+  flare->draw(lens, strength, view, state.clouds->earthRadiusM(), {}, {}, target, 1.0f);
+  const Image<float> light = target.readPicture(0, 3);
+  for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] += light.data[i];
 }
 
 }  // namespace welkin::render

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a SkyState: atmosphere, discs, ground and all volumetric layers in one march, accumulated to
-// convergence.
+// Draws a SkyState: atmosphere, discs, ground and all layers, volumes and sheets, in one march, accumulated
+// to convergence.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/render/thin_layer.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 #include "welkin/shading/sheet_mesh.h"
 
@@ -33,6 +35,20 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
   constexpr std::array<int, 2> kAttributes = {3, 1};
   layer.mesh = gpu::Mesh(mesh.vertices, kAttributes, mesh.indices);
   return layer;
+}
+
+std::vector<ThinLayer> makeThinLayers(const scene::Scene& scene, const weather::Weather& weather,
+                                      double earthRadiusM) {
+  std::vector<ThinLayer> layers;
+  const std::vector<scene::Sheet> wanted = scene::sheetsOf(scene, weather);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    ThinLayer made = makeThinLayer(wanted[i], scene::sheetSeed(scene, i), earthRadiusM);
+    const auto above = std::find_if(layers.begin(), layers.end(), [&](const ThinLayer& other) {
+      return other.sheet.heightM > made.sheet.heightM;
+    });
+    layers.insert(above, std::move(made));
+  }
+  return layers;
 }
 
 }  // namespace welkin::render

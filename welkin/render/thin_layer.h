@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "welkin/gpu/mesh.h"
 #include "welkin/gpu/texture.h"
-#include "welkin/scene/sheet.h"
+#include "welkin/scene/scene.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
 
@@ -27,5 +28,9 @@ struct ThinLayer {
 
 // `light` and `sunThrough` are left as they are: they depend on all layers together.
 ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM);
+
+// Those of a scene (scene::sheetsOf), from the ground up.
+std::vector<ThinLayer> makeThinLayers(const scene::Scene& scene, const weather::Weather& weather,
+                                      double earthRadiusM);
 
 }  // namespace welkin::render

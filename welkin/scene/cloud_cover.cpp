@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "welkin/core/random.h"
@@ -60,6 +61,10 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
   double clear = 1.0;  // the share of the sky that random overlap leaves
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     const weather::Layer& layer = weather.layers[i];
+    if (isSheet(scene, layer)) {
+      result.push_back({patternSeed(scene, i, 0), 0.0f, static_cast<float>(layer.extinctionPerM)});
+      continue;
+    }
     clear *= 1.0 - layer.oktas / kOktas;
     // The layer in the pattern of `seed`, covering by itself what it should and `extraOktas` more.
     auto tried = [&](std::uint64_t seed, double extraOktas) {
@@ -102,15 +107,40 @@ std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weat
   return std::make_shared<field::CloudField>(std::move(noise), std::move(shapes), scene.place.altitudeM);
 }
 
-DeliveredCover measureCover(const weather::Weather& weather, const field::CloudField& clouds) {
+DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
+                            const field::CloudField& clouds) {
   DeliveredCover cover;
+  const std::vector<Sheet> sheets = sheetsOf(scene, weather);
   std::vector<float> together(kReportView.directions);
+  double clear = 1.0;  // the share of the sky that sheets leave
+  std::size_t sheet = 0;
+  const auto addSheet = [&] {
+    const double share = deliveredCover(sheets[sheet], sheetSeed(scene, sheet));
+    ++sheet;
+    clear *= 1.0 - share;
+    return kOktas * share;
+  };
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
+    const weather::Layer& layer = weather.layers[i];
+    if (isSheet(scene, layer)) {
+      cover.layers.push_back({layer.oktas, addSheet()});
+      continue;
+    }
     const std::vector<float> depths = field::layerOpticalDepths(clouds, kReportView, static_cast<int>(i));
-    cover.layers.push_back({weather.layers[i].oktas, kOktas * field::coverOf(depths)});
+    cover.layers.push_back({layer.oktas, kOktas * field::coverOf(depths)});
     together = sumOf(together, depths);
   }
-  cover.sky = {weather.requestedOktas, kOktas * field::coverOf(together)};
+  double clearAsked = 1.0 - weather.requestedOktas / kOktas;
+  while (sheet < sheets.size()) {
+    const std::optional<double> asked = sheets[sheet].oktas;
+    const double delivered = addSheet();
+    cover.sheets.push_back({asked.value_or(delivered), delivered});
+    clearAsked *= 1.0 - cover.sheets.back().requestedOktas / kOktas;
+  }
+  clear *= 1.0 - field::coverOf(together);
+  // The weather's own number stays as it is, to the last bit, where there is nothing beside it.
+  cover.sky = {cover.sheets.empty() ? weather.requestedOktas : kOktas * (1.0 - clearAsked),
+               sheets.empty() ? kOktas * field::coverOf(together) : kOktas * (1.0 - clear)};
   return cover;
 }
 

@@ -36,11 +36,12 @@ struct LayerCalibration {
 };
 
 // For each layer of the weather, so that each covers by itself what it should and all of them together what
-// they should by random overlap. `noise` is that of the scene's seed.
+// they should by random overlap. `noise` is that of the scene's seed. Layers that are drawn as sheets are
+// left out: nothing is settled for them.
 std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
                                               const std::shared_ptr<const field::CloudNoise>& noise);
 
-// The clouds `secondsAfter` the scene's time.
+// The clouds `secondsAfter` the scene's time, all layers as if they were volumes.
 std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weather::Weather& weather,
                                                   const std::vector<LayerCalibration>& calibration,
                                                   std::shared_ptr<const field::CloudNoise> noise,
@@ -49,8 +50,12 @@ std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weat
 // What the clouds hide of the sky above the place.
 struct DeliveredCover {
   std::vector<LayerCover> layers;  // each by itself, in the order of the weather's
+  std::vector<LayerCover> sheets;  // the same of those by hand
   LayerCover sky;                  // all together
 };
-DeliveredCover measureCover(const weather::Weather& weather, const field::CloudField& clouds);
+
+// Volumes as seen from the ground, sheets as their patterns have it; a sheet lies over all others at random.
+DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
+                            const field::CloudField& clouds);
 
 }  // namespace welkin::scene

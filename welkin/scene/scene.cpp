@@ -79,8 +79,8 @@ void describe(Scene& s, ParamVisitor& v) {
            "meteorological optical range at the ground; absent: from the report, else 40 km", 10, 300000},
           s.visibilityM);
   v.choice({"technique", "",
-            "how the layers are drawn: as volumes (auto, volume) or, in next to no time, as thin sheets on "
-            "planes, on planes bent over the earth (skyplane), or on domes"},
+            "how layers that name no technique of their own are drawn: as volumes (auto, volume) or, in next "
+            "to no time, as thin sheets on planes, on planes bent over the earth (skyplane), or on domes"},
            s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
@@ -89,7 +89,9 @@ void describe(Scene& s, ParamVisitor& v) {
   v.group({"ground", "", "the ground below"}, s.ground);
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
-  v.list({"sheet", "", "a thin layer of cloud by hand, drawn beside those of the weather"}, s.sheets);
+  v.list({"sheet", "",
+          "a thin layer of cloud by hand, drawn beside those of the weather, volumes and sheets alike"},
+         s.sheets);
 }
 
 void validate(const Scene& s) {
@@ -110,26 +112,32 @@ void validate(const Scene& s) {
     throw ParameterError("there are " + std::to_string(s.sheets.size()) + " sheets; expected at most " +
                          std::to_string(kMaxSheets));
   for (const Sheet& sheet : s.sheets) validate(sheet);
-  if (!s.sheets.empty() && !drawsSheets(s.technique))
-    throw ParameterError("[[sheet]] is drawn with technique plane, skyplane or dome, not beside volumes");
-  if (s.output.flare > 0.0 && !drawsSheets(s.technique))
-    throw ParameterError("output.flare is drawn with technique plane, skyplane or dome, not beside volumes");
+  if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)
+    throw ParameterError("output.flare is a lens's; expected projection perspective");
 }
 
 bool drawsSheets(Technique technique) {
   return technique == Technique::kPlane || technique == Technique::kSkyPlane || technique == Technique::kDome;
 }
 
+Technique techniqueOf(const Scene& scene, const weather::Layer& layer) {
+  return layer.technique == Technique::kAuto ? scene.technique : layer.technique;
+}
+
+bool isSheet(const Scene& scene, const weather::Layer& layer) {
+  return drawsSheets(techniqueOf(scene, layer));
+}
+
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather) {
   std::vector<Sheet> sheets;
-  if (drawsSheets(scene.technique)) {
-    const SheetSurface surface = scene.technique == Technique::kPlane  ? SheetSurface::kPlane
-                                 : scene.technique == Technique::kDome ? SheetSurface::kDome
-                                                                       : SheetSurface::kSkyPlane;
-    for (const weather::Layer& layer : weather.layers) {
-      sheets.push_back(sheetOf(layer, surface));
-      sheets.back().tier = scene.tier;
-    }
+  for (const weather::Layer& layer : weather.layers) {
+    const Technique technique = techniqueOf(scene, layer);
+    if (!drawsSheets(technique)) continue;
+    const SheetSurface surface = technique == Technique::kPlane  ? SheetSurface::kPlane
+                                 : technique == Technique::kDome ? SheetSurface::kDome
+                                                                 : SheetSurface::kSkyPlane;
+    sheets.push_back(sheetOf(layer, surface));
+    sheets.back().tier = scene.tier;
   }
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
   return sheets;

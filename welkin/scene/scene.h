@@ -61,26 +61,19 @@ struct Ground {
 };
 void describe(Ground& g, ParamVisitor& v);
 
-// How the layers of the weather are drawn.
-enum class Technique {
-  kAuto,    // as the scene needs: volumes
-  kVolume,  // marched volumes
-  kPlane,   // thin sheets on the surface of that name (SheetSurface)
-  kSkyPlane,
-  kDome,
-};
+using weather::Technique;
 
 struct Scene {
   Place place;
   UtcTime time;      // the moment at which the weather is as described
   double atS = 0.0;  // seconds after `time` at which the (first) picture is taken
   std::int64_t seed = 1;
-  std::optional<std::string> metar;    // the weather as a report; wins over `layers`
-  std::optional<double> visibilityM;   // absent: from the report, else 40 km
-  std::vector<weather::Layer> layers;  // the weather by hand
-  Technique technique = Technique::kAuto;
-  SheetTier tier = SheetTier::kLit;  // of layers that are drawn as sheets
-  std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
+  std::optional<std::string> metar;        // the weather as a report; wins over `layers`
+  std::optional<double> visibilityM;       // absent: from the report, else 40 km
+  std::vector<weather::Layer> layers;      // the weather by hand
+  Technique technique = Technique::kAuto;  // of layers that name none
+  SheetTier tier = SheetTier::kLit;        // of layers that are drawn as sheets
+  std::vector<Sheet> sheets;               // thin layers by hand, beside the weather's
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
@@ -93,9 +86,12 @@ void describe(Scene& s, ParamVisitor& v);
 // ParameterError.
 void validate(const Scene& s);
 
-// The sheets of a scene: the layers of the weather where the technique draws them so, then those by hand.
-std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);
+// The technique that draws a layer of the scene's weather: its own, or the scene's.
+Technique techniqueOf(const Scene& scene, const weather::Layer& layer);
 bool drawsSheets(Technique technique);
+bool isSheet(const Scene& scene, const weather::Layer& layer);  // drawn as one
+// The sheets of a scene: the layers of the weather that are drawn so, then those by hand.
+std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);
 // Of the pattern of the sheet with this index among them.
 std::uint64_t sheetSeed(const Scene& scene, std::size_t index);
 
@@ -111,9 +107,6 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::Projection> =
     std::array<std::string_view, 4>{"perspective", "fisheye", "equirect", "cubemap"};
-template <>
-inline constexpr auto kEnumNames<scene::Technique> =
-    std::array<std::string_view, 5>{"auto", "volume", "plane", "skyplane", "dome"};
 template <>
 inline constexpr auto kEnumNames<scene::Quality> =
     std::array<std::string_view, 4>{"low", "medium", "high", "ultra"};

@@ -21,11 +21,13 @@ glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Li
          static_cast<float>(mu);
 }
 
-// Mean share of diffuse light that passes the layers: the clear part of each, and the cloudy part at the
+// Mean share of diffuse light that passes the volumes: the clear part of each, and the cloudy part at the
 // Eddington transmittance of conservative cloud for diffuse light, 1 / (1 + 3/4 (1 - g) tau).
-double diffuseTransmittance(const weather::Weather& weather, const field::CloudField& clouds) {
+double diffuseTransmittance(const Scene& scene, const weather::Weather& weather,
+                            const field::CloudField& clouds) {
   double through = 1.0;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
+    if (isSheet(scene, weather.layers[i])) continue;
     const field::CloudLayer& layer = clouds.layers()[i];
     const double tau = 0.4 * layer.extinction * (layer.topM - layer.baseM);
     const double cloudy = 1.0 / (1.0 + 0.75 * (1.0 - optics::dropletAsymmetry()) * tau);
@@ -42,43 +44,36 @@ AmbientLight ambientLight(const SkyState& s) {
   a.skyLow = skyOnGround / pi;
   a.skyHigh =
       atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
-  const float through = static_cast<float>(diffuseTransmittance(s.weather, *s.clouds));
+  const float through = static_cast<float>(diffuseTransmittance(s.scene, s.weather, *s.clouds));
   // What falls on the clouds has not yet passed the air beneath their tops: the highest that are thick enough
   // to scatter it all.
-  double topM = 0.0;
-  for (const weather::Layer& layer : s.weather.layers)
+  double topM = 0.0, clear = 1.0;
+  const weather::Layer* lowest = nullptr;
+  std::size_t volumes = 0;
+  for (const weather::Layer& layer : s.weather.layers) {
+    if (isSheet(s.scene, layer)) continue;
+    if (!lowest) lowest = &layer;
+    ++volumes;
+    clear *= 1.0 - layer.oktas / kOktas;
     if (layer.oktas >= 4.0 && layer.extinctionPerM * (layer.topM - layer.baseM) > 3.0) topM = layer.topM;
+  }
   glm::vec3 direct(0.0f), onClouds(0.0f);
   for (const sky::Light& light : s.lights) {
     direct += horizontalIlluminance(atmosphere, light, 0.0);
     onClouds += horizontalIlluminance(atmosphere, light, topM);
   }
   // Direct light that clouds take from the ground comes back as diffuse light, as much as they let through.
-  const float cover = static_cast<float>(s.weather.requestedOktas / kOktas);
+  const float cover = static_cast<float>(
+      volumes == s.weather.layers.size() ? s.weather.requestedOktas / kOktas : 1.0 - clear);
   const float diffused = std::max(through - (1.0f - cover), 0.0f);
   a.skyOnGround = skyOnGround * through + onClouds * diffused;
   a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
   // From above the clouds most of the air in view is sunlit.
-  const double lowestBase = s.weather.layers.empty() ? 0.0 : s.weather.layers.front().baseM;
-  const bool beneath = !s.weather.layers.empty() && s.scene.camera.eyeM < lowestBase + 200.0;
+  const bool beneath = lowest && s.scene.camera.eyeM < lowest->baseM + 200.0;
   a.clearAir = beneath ? 1.0f - cover : 1.0f;
   a.haze = 0.75f * a.skyOnGround / pi +
            0.25f * a.ground;  // the sky fills most of what a droplet near the ground sees brightly
   return a;
-}
-
-// The cover of layers drawn as sheets: each as its pattern has it, all together by random overlap.
-DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather) {
-  DeliveredCover cover;
-  const std::vector<Sheet> sheets = sheetsOf(scene, weather);
-  double clear = 1.0;
-  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    const double share = deliveredCover(sheets[i], sheetSeed(scene, i));
-    cover.layers.push_back({weather.layers[i].oktas, kOktas * share});
-    clear *= 1.0 - share;
-  }
-  cover.sky = {weather.requestedOktas, kOktas * (1.0 - clear)};
-  return cover;
 }
 
 double headingOf(const SkyState& s) {
@@ -114,11 +109,12 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
   if (previous) {
     s.cover = previous->cover;
+    s.sheetCover = previous->sheetCover;
     s.skyCover = previous->skyCover;
   } else {
-    DeliveredCover cover =
-        drawsSheets(scene.technique) ? sheetCover(scene, s.weather) : measureCover(s.weather, *s.clouds);
+    DeliveredCover cover = measureCover(scene, s.weather, *s.clouds);
     s.cover = std::move(cover.layers);
+    s.sheetCover = std::move(cover.sheets);
     s.skyCover = cover.sky;
   }
 

@@ -14,7 +14,8 @@
 
 namespace welkin::scene {
 
-// Light that reaches clouds and ground from all directions at once. Linear Rec. 709.
+// Light that reaches clouds and ground from all directions at once, past the layers that are drawn as
+// volumes; what thin sheets make of it: shading/sheet_ambient.h. Linear Rec. 709.
 struct AmbientLight {
   glm::vec3 skyLow{0};       // mean luminance of the upper hemisphere of the clear sky at the ground, cd/m2
   glm::vec3 skyHigh{0};      // the same at 10 km
@@ -45,9 +46,10 @@ struct SkyState {
   std::shared_ptr<const field::CloudField> clouds;
   std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
   AmbientLight ambient;
-  std::vector<LayerCover> cover;  // a layer each, in the order of weather.layers
-  LayerCover skyCover;            // the whole sky
-  double headingDeg = 0.0;        // the camera's, with "absent" resolved
+  std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
+  std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
+  LayerCover skyCover;                 // the whole sky
+  double headingDeg = 0.0;             // the camera's, with "absent" resolved
 };
 
 // The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "welkin/core/units.h"
+#include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
 
 namespace welkin::shading {
@@ -49,47 +50,128 @@ SheetTransmittance transmittanceOf(const SheetMatter& matter, double sine) {
   return mean;
 }
 
-LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets) {
+namespace {
+
+// Light on its way down through layers of cloud: what is left of the sky's and of each light's, and what
+// clouds have diffused.
+class Descent {
+ public:
+  explicit Descent(const scene::SkyState& state) : state_(state), direct_(state.lights.size(), 1.0) {}
+
+  // through(sine): what the layer lets down of light of this sine of elevation.
+  template <class Through>
+  void pass(double heightM, const Through& through) {
+    glm::vec3 fresh(0.0f);
+    for (std::size_t l = 0; l < state_.lights.size(); ++l) {
+      const SheetTransmittance t = through(state_.lights[l].direction.z);
+      fresh += horizontalIlluminance(state_, state_.lights[l], heightM) *
+               static_cast<float>(direct_[l] * t.diffused);
+      direct_[l] *= t.direct;
+    }
+    const double sky = through(1.0).sky;
+    diffused_ = diffused_ * static_cast<float>(sky) + fresh;
+    sky_ *= sky;
+  }
+  void pass(const SheetInSky& sheet) {
+    pass(sheet.heightM, [&](double sine) { return transmittanceOf(*sheet.matter, sine); });
+  }
+  void pass(const VolumeInSky& volume) {
+    pass(volume.heightM, [&](double sine) { return transmittanceOf(volume.depth, sine, volume.cover); });
+  }
+
+  double direct() const { return direct_[0]; }  // of the key light
+  glm::vec3 skyAt(double heightM) const {
+    return clearSky(state_.ambient, heightM) * static_cast<float>(sky_) + diffused_ / kPiF;
+  }
+
+  struct AtGround {
+    glm::vec3 sky, light;  // illuminance by the sky, lux; luminance of the ground
+  };
+  AtGround atGround() const {
+    const glm::vec3 albedo(state_.scene.ground.albedo);
+    glm::vec3 lit(0.0f);
+    for (std::size_t l = 0; l < state_.lights.size(); ++l)
+      lit += horizontalIlluminance(state_, state_.lights[l], 0.0) * static_cast<float>(direct_[l]);
+    const glm::vec3 down = clearSky(state_.ambient, 0.0) * kPiF * static_cast<float>(sky_) + diffused_;
+    // To the clouds and back: all that they do not let through returns.
+    const glm::vec3 again = albedo * static_cast<float>(1.0 - sky_);
+    const glm::vec3 sky = (down + again * lit) / (1.0f - again);
+    return {sky, albedo / kPiF * (sky + lit)};
+  }
+
+ private:
+  const scene::SkyState& state_;
+  std::vector<double> direct_;
+  double sky_ = 1.0;
+  glm::vec3 diffused_{0.0f};  // illuminance, lux
+};
+
+}  // namespace
+
+std::vector<VolumeInSky> volumesIn(const scene::SkyState& state) {
+  std::vector<VolumeInSky> volumes;
+  const auto layers = state.clouds->layers();
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (scene::isSheet(state.scene, state.weather.layers[i])) continue;
+    const field::CloudLayer& layer = layers[i];
+    volumes.push_back({0.5 * (layer.baseM + layer.topM),
+                       0.4 * static_cast<double>(layer.extinction * (layer.topM - layer.baseM)),
+                       state.weather.layers[i].oktas / kOktas});
+  }
+  std::ranges::sort(volumes, {}, &VolumeInSky::heightM);
+  return volumes;
+}
+
+LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                            std::span<const VolumeInSky> volumes) {
   LightUnderSheets out;
   out.ambient = state.ambient;
   out.sheets.resize(sheets.size());
   out.sunThrough.resize(sheets.size());
-  // From the top down: what is left of the sky's light and of each light's, and what clouds have diffused.
-  std::vector<double> direct(state.lights.size(), 1.0);
-  double sky = 1.0;
-  glm::vec3 diffused(0.0f);  // illuminance, lux
+  Descent all(state), sheetsAlone(state), volumesAlone(state);
+  std::size_t volume = volumes.size();
+  const auto passVolumesAbove = [&](double heightM) {
+    for (; volume > 0 && volumes[volume - 1].heightM > heightM; --volume) {
+      all.pass(volumes[volume - 1]);
+      volumesAlone.pass(volumes[volume - 1]);
+    }
+  };
   for (std::size_t i = sheets.size(); i-- > 0;) {
     const SheetInSky& sheet = sheets[i];
-    out.sheets[i].sun = static_cast<float>(direct[0]);
-    out.sheets[i].sky = clearSky(state.ambient, sheet.heightM) * static_cast<float>(sky) + diffused / kPiF;
-    glm::vec3 fresh(0.0f);
-    for (std::size_t l = 0; l < state.lights.size(); ++l) {
-      const SheetTransmittance t = transmittanceOf(*sheet.matter, state.lights[l].direction.z);
-      fresh += horizontalIlluminance(state, state.lights[l], sheet.heightM) *
-               static_cast<float>(direct[l] * t.diffused);
-      direct[l] *= t.direct;
-      if (l == 0) out.sunThrough[i] = static_cast<float>(t.direct);
-    }
-    const double through = transmittanceOf(*sheet.matter, 1.0).sky;
-    diffused = diffused * static_cast<float>(through) + fresh;
-    sky *= through;
+    passVolumesAbove(sheet.heightM);
+    out.sheets[i].sun = static_cast<float>(sheetsAlone.direct());
+    out.sheets[i].sky = all.skyAt(sheet.heightM);
+    all.pass(sheet);
+    sheetsAlone.pass(sheet);
+    out.sunThrough[i] =
+        static_cast<float>(transmittanceOf(*sheet.matter, state.lights[0].direction.z).direct);
   }
+  passVolumesAbove(-1.0);
 
   scene::AmbientLight& a = out.ambient;
-  const glm::vec3 albedo(state.scene.ground.albedo);
-  glm::vec3 lit(0.0f);
-  for (std::size_t l = 0; l < state.lights.size(); ++l)
-    lit += horizontalIlluminance(state, state.lights[l], 0.0) * static_cast<float>(direct[l]);
-  const glm::vec3 down = clearSky(a, 0.0) * kPiF * static_cast<float>(sky) + diffused;
-  // To the clouds and back: all that they do not let through returns.
-  const glm::vec3 again = albedo * static_cast<float>(1.0 - sky);
-  a.skyOnGround = (down + again * lit) / (1.0f - again);
-  a.ground = albedo / kPiF * (a.skyOnGround + lit);
+  const Descent::AtGround ground = all.atGround();
+  a.skyOnGround = ground.sky;
+  a.ground = ground.light;
   a.clearAir = 1.0f;
+  if (!volumes.empty()) {
+    const Descent::AtGround before = volumesAlone.atGround();
+    const glm::vec3 least(1e-30f);
+    a.skyOnGround = state.ambient.skyOnGround * (ground.sky / glm::max(before.sky, least));
+    a.ground = state.ambient.ground * (ground.light / glm::max(before.light, least));
+    a.clearAir = state.ambient.clearAir;
+  }
   for (std::size_t i = 0; i < sheets.size(); ++i)
     if (sheets[i].heightM > state.scene.camera.eyeM) a.clearAir *= out.sunThrough[i];
   a.haze = 0.75f * a.skyOnGround / kPiF + 0.25f * a.ground;
   return out;
+}
+
+glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {
+  Descent descent(state);
+  for (std::size_t i = sheets.size(); i > 0 && sheets[i - 1].heightM > heightM; --i)
+    descent.pass(sheets[i - 1]);
+  return {descent.skyAt(heightM) / glm::max(clearSky(state.ambient, heightM), glm::vec3(1e-30f)),
+          static_cast<float>(descent.direct())};
 }
 
 }  // namespace welkin::shading

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <span>
 #include <vector>
 
@@ -54,8 +55,25 @@ struct SheetInSky {
   const SheetMatter* matter = nullptr;
 };
 
+// A layer of the weather that is drawn as a volume, as light from above sees it: a slab with holes.
+struct VolumeInSky {
+  double heightM = 0.0;  // of its middle
+  double depth = 0.0;    // typical optical depth
+  double cover = 0.0;    // [0, 1]
+};
+std::vector<VolumeInSky> volumesIn(const scene::SkyState& state);
+
 // sheets: from the ground up. Light that goes to and fro between the ground and the clouds counts; between
 // clouds not.
-LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets);
+//
+// Beside volumes the state's ambient light, which knows of them, is taken times what the sheets change of it.
+// They dim the sky over a sheet, too; the share of the key light that reaches one leaves them out, as their
+// shadows are drawn.
+LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                            std::span<const VolumeInSky> volumes = {});
+
+// Light at a height under sheets: the mean luminance of the sky there as a multiple of the clear sky's (xyz),
+// and the mean share of the key light (w).
+glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM);
 
 }  // namespace welkin::shading

@@ -12,6 +12,32 @@ namespace {
 
 constexpr int kSegments = 48;  // around the eye
 
+constexpr double kPlaneReach = 20.0;  // half-sides in heights: it ends 3 degrees above the horizon
+constexpr int kPlaneRings = 12;       // of squares about the middle
+constexpr int kSkyRings = 32;
+constexpr double kSkyLowestDeg = -0.5;  // below the horizon of an eye on the ground
+constexpr double kDomeReach = 10.0;     // radius in heights
+
+// Where a line of the plane lies, of its half-side; they are closer in the middle, which is nearest to the
+// eye.
+double planeLine(int i) {
+  const double x = static_cast<double>(i) / kPlaneRings;
+  return x * std::abs(x);
+}
+
+// A ring of the sky plane, by elevation from the ground, since that is what is seen: distance along the ray
+// to the sphere of the sheet, from an eye on the ground.
+struct RingAt {
+  double distanceM, elevation;
+};
+RingAt skyRing(int ring, double heightM, double earthRadiusM) {
+  const double lowest = radians(kSkyLowestDeg);
+  const double x = 1.0 - static_cast<double>(ring) / kSkyRings;
+  const double elevation = lowest + (0.5 * kPi - lowest) * x * x;
+  const double b = earthRadiusM * std::sin(elevation);
+  return {std::sqrt(b * b + heightM * (2.0 * earthRadiusM + heightM)) - b, elevation};
+}
+
 struct Ring {
   double radiusM, zM;
   float alpha;
@@ -45,15 +71,9 @@ SheetMesh ringsMesh(const std::vector<Ring>& rings, int segments) {
 }  // namespace
 
 SheetMesh planeMesh(double heightM) {
-  constexpr double kReach = 20.0;  // half-sides in heights: it ends 3 degrees above the horizon
-  constexpr int kRings = 12;       // of squares about the middle
   SheetMesh mesh;
-  const int n = 2 * kRings + 1;
-  // Lines lie closer in the middle, which is nearest to the eye.
-  const auto line = [&](int i) {
-    const double x = static_cast<double>(i - kRings) / kRings;
-    return kReach * heightM * x * std::abs(x);
-  };
+  const int n = 2 * kPlaneRings + 1;
+  const auto line = [&](int i) { return kPlaneReach * heightM * planeLine(i - kPlaneRings); };
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const bool rim = i == 0 || j == 0 || i == n - 1 || j == n - 1;
@@ -70,17 +90,11 @@ SheetMesh planeMesh(double heightM) {
 }
 
 SheetMesh skyPlaneMesh(double heightM, double earthRadiusM) {
-  constexpr int kRings = 32;
-  // By elevation from the ground, since that is what is seen: to half a degree below the horizon.
-  const double lowest = radians(-0.5);
   std::vector<Ring> rings;
-  for (int r = 0; r <= kRings; ++r) {
-    const double x = 1.0 - static_cast<double>(r) / kRings;
-    const double elevation = lowest + (0.5 * kPi - lowest) * x * x;
-    // Distance along the ray to the sphere of the sheet, from an eye on the ground.
-    const double b = earthRadiusM * std::sin(elevation);
-    const double t = std::sqrt(b * b + heightM * (2.0 * earthRadiusM + heightM)) - b;
-    rings.push_back({t * std::cos(elevation), t * std::sin(elevation), r == kRings ? 0.0f : 1.0f});
+  for (int r = 0; r <= kSkyRings; ++r) {
+    const RingAt at = skyRing(r, heightM, earthRadiusM);
+    rings.push_back({at.distanceM * std::cos(at.elevation), at.distanceM * std::sin(at.elevation),
+                     r == kSkyRings ? 0.0f : 1.0f});
   }
   return ringsMesh(rings, kSegments);
 }
@@ -107,7 +121,36 @@ SheetMesh meshOf(const scene::Sheet& sheet, double earthRadiusM) {
     case scene::SheetSurface::kDome:
       break;
   }
-  return domeMesh(sheet.heightM, 10.0 * sheet.heightM, kSegments);
+  return domeMesh(sheet.heightM, kDomeReach * sheet.heightM, kSegments);
+}
+
+SheetShape shapeOf(const scene::Sheet& sheet, double earthRadiusM, double eyeM) {
+  constexpr float kFar = 1e9f;
+  const double h = sheet.heightM;
+  const auto height = static_cast<float>(h);
+  switch (sheet.surface) {
+    case scene::SheetSurface::kPlane:
+      return {{1.0f, 1e12f, height, static_cast<float>(kPlaneReach * h)},
+              static_cast<float>(kPlaneReach * h * planeLine(kPlaneRings - 1))};
+    case scene::SheetSurface::kSkyPlane: {
+      const auto radius = [&](int ring) {
+        const RingAt at = skyRing(ring, h, earthRadiusM);
+        return at.distanceM * std::cos(at.elevation);
+      };
+      double inner = radius(kSkyRings - 1), outer = radius(kSkyRings);
+      if (eyeM > h) {
+        // Past the horizon to the sheet behind it.
+        inner = std::max(inner, std::sqrt(2.0 * earthRadiusM * eyeM) + std::sqrt(2.0 * earthRadiusM * h));
+        outer = std::max(outer, 1.02 * inner);
+      }
+      return {{1.0f, static_cast<float>(earthRadiusM), height, static_cast<float>(outer)},
+              static_cast<float>(inner)};
+    }
+    case scene::SheetSurface::kDome:
+      break;
+  }
+  const auto stretch = static_cast<float>(kDomeReach);
+  return {{stretch, 0.0f, stretch * height, kFar}, kFar};
 }
 
 }  // namespace welkin::shading

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "welkin/scene/sheet.h"
@@ -33,5 +34,13 @@ SheetMesh skyPlaneMesh(double heightM, double earthRadiusM);
 SheetMesh domeMesh(double heightM, double radiusM, int segments = 20);
 
 SheetMesh meshOf(const scene::Sheet& sheet, double earthRadiusM);
+
+// The same surfaces as formulas, for rays: `shape` and `innerM` of shaders/lib/sheet_surface.glsl. A sky
+// plane seen from above it reaches as far as rays do; its mesh stays what it is.
+struct SheetShape {
+  glm::vec4 shape{0.0f};
+  float innerM = 0.0f;
+};
+SheetShape shapeOf(const scene::Sheet& sheet, double earthRadiusM, double eyeM);
 
 }  // namespace welkin::shading

@@ -25,7 +25,6 @@ std::string layerMember(std::size_t i, const char* member) {
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   std::vector<float> ice(field::kMaxLayers, 0.0f);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
@@ -43,6 +42,7 @@ Uniforms skyUniforms(const scene::SkyState& state) {
     u.emplace_back(std::string("uAtmosphere.") + name, value);
   });
   u.emplace_back("uEyeM", static_cast<float>(s.camera.eyeM));
+  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   u.emplace_back("uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
   u.emplace_back("uKeyDirection", state.lights[0].direction);
   u.emplace_back("uKeyLightTopM", kKeyLightTopM);
@@ -171,11 +171,16 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
   // A band is a range of heights with the same layers all through: cut at every base and top, so that the
   // foot of a cumulonimbus costs nothing further up.
   std::vector<float> cuts;
-  for (const field::CloudLayer& layer : layers) cuts.insert(cuts.end(), {layer.baseM, layer.topM});
+  std::vector<std::size_t> volumes;  // the others are drawn as sheets
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (scene::isSheet(state.scene, state.weather.layers[i])) continue;
+    volumes.push_back(i);
+    cuts.insert(cuts.end(), {layers[i].baseM, layers[i].topM});
+  }
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
     LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}};
-    for (std::size_t i = 0; i < layers.size(); ++i)
+    for (const std::size_t i : volumes)
       if (layers[i].baseM <= band.baseM && layers[i].topM >= band.topM)
         band.layers.push_back(static_cast<int>(i));
     if (band.layers.empty() || band.topM <= band.baseM) continue;
@@ -223,8 +228,6 @@ Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {
   return u;
 }
 
-namespace {
-
 // "CALL(0, 0) CALL(1, 0)": layer and band of each layer in the band.
 std::string layerCalls(const LightVolumeLayout& layout, int band) {
   std::string calls;
@@ -232,8 +235,6 @@ std::string layerCalls(const LightVolumeLayout& layout, int band) {
     calls += "CALL(" + std::to_string(layer) + ", " + std::to_string(band) + ") ";
   return calls;
 }
-
-}  // namespace
 
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
   std::string layers, down, up;

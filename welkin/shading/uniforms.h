@@ -61,10 +61,10 @@ struct LightVolumeLayout {
   static constexpr int kColumns = 160;  // a side, of each cascade
   static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
                                                   128000.0f};  // half the side of each cascade
-  std::vector<Band> bands;                                     // from the ground up; they may touch
-  std::vector<float> heightsM;                                 // of the slices
-  glm::vec3 line{0, 0, 1};                                     // along which depths are summed; z > 0
-  bool towardsSun = true;                                      // or away from it
+  std::vector<Band> bands;      // of the layers that are volumes, from the ground up; they may touch
+  std::vector<float> heightsM;  // of the slices
+  glm::vec3 line{0, 0, 1};      // along which depths are summed; z > 0
+  bool towardsSun = true;       // or away from it
 };
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
@@ -74,5 +74,6 @@ Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
 using ShaderDefines = std::vector<ShaderDefine>;
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
+std::string layerCalls(const LightVolumeLayout& layout, int band);  // of the one and of the other
 
 }  // namespace welkin::shading

@@ -37,6 +37,10 @@ void describe(Layer& layer, ParamVisitor& v) {
   v.value({"wind_from_deg", "deg", "direction the layer's wind comes from, clockwise from north", 0.0, 360.0},
           layer.windFromDeg);
   v.value({"wind_speed_mps", "m/s", "speed of the layer's wind", 0.0, 150.0}, layer.windSpeedMps);
+  v.choice({"technique", "",
+            "how the layer is drawn, as a volume or as a thin sheet on a surface; auto or left out: as the "
+            "scene's technique says"},
+           layer.technique);
 }
 
 void validate(const Layer& layer) {

@@ -28,6 +28,15 @@ enum class Genus {
   kFog,
 };
 
+// How a layer is drawn.
+enum class Technique {
+  kAuto,    // as the scene needs: volumes; of a layer: as the scene's technique says
+  kVolume,  // marched volumes
+  kPlane,   // thin sheets on the surface of that name (scene::SheetSurface)
+  kSkyPlane,
+  kDome,
+};
+
 // One layer of cloud.
 struct Layer {
   Genus genus = Genus::kCumulus;
@@ -39,6 +48,7 @@ struct Layer {
   double windFromDeg = 270.0;      // true direction the layer's wind comes from
   double windSpeedMps = 8.0;
   bool baseAssumed = false;  // the report did not give the base; it is climatological
+  Technique technique = Technique::kAuto;
 
   bool operator==(const Layer&) const = default;
 };
@@ -79,6 +89,9 @@ template <>
 inline constexpr auto kEnumNames<weather::Genus> = std::array<std::string_view, 11>{
     "cumulus",     "stratocumulus", "stratus",      "nimbostratus", "cumulonimbus", "altocumulus",
     "altostratus", "cirrus",        "cirrocumulus", "cirrostratus", "fog"};
+template <>
+inline constexpr auto kEnumNames<weather::Technique> =
+    std::array<std::string_view, 5>{"auto", "volume", "plane", "skyplane", "dome"};
 template <>
 inline constexpr auto kEnumNames<weather::PrecipitationKind> =
     std::array<std::string_view, 6>{"none", "drizzle", "rain", "snow", "ice_pellets", "hail"};

@@ -138,5 +138,19 @@ TEST(Projections, ShowTheSameClouds) {
   RecordProperty("mean", std::to_string(d.mean));
 }
 
+TEST(Projections, ShowTheSameSheetsAmongVolumes) {
+  scene::Scene s = cloudyScene(40.0, {Genus::kStratocumulus, Genus::kCirrus});
+  s.layers[1].technique = scene::Technique::kSkyPlane;
+  s.output.quality = scene::Quality::kMedium;
+  scene::Sheet dome = scene::sheetOf(scene::SheetPreset::kThesisDome);
+  dome.texels = 32;
+  dome.heightM = 3000.0;
+  dome.tileM = 12000.0;
+  s.sheets = {dome};
+  const Disagreement d = compare(s);
+  EXPECT_LT(d.mean, 0.03);
+  RecordProperty("mean", std::to_string(d.mean));
+}
+
 }  // namespace
 }  // namespace welkin::render

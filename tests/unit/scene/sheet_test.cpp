@@ -9,6 +9,7 @@
 #include "welkin/core/error.h"
 #include "welkin/scene/scene.h"
 #include "welkin/scene/scene_file.h"
+#include "welkin/scene/sky_state.h"
 
 namespace welkin::scene {
 namespace {
@@ -67,6 +68,66 @@ TEST(Sheet, WeatherBecomesSheets) {
   EXPECT_LT(sheets[0].heightM, s.layers[0].topM);
   EXPECT_EQ(sheets[1].oktas, s.layers[1].oktas);
   EXPECT_LT(sheets[0].density, sheets[1].density);  // cirrus is thinner
+}
+
+// A layer's own technique wins over the scene's; sheets by hand stand beside volumes.
+TEST(Sheet, LayersChooseTheirTechnique) {
+  Scene s = parseScene(
+                "[[layer]]\ngenus = \"cumulus\"\n[[layer]]\ngenus = \"cirrus\"\ntechnique = \"plane\"\n"
+                "[[sheet]]\nheight_m = 500\n",
+                "t.toml")
+                .scene;
+  EXPECT_EQ(parseScene(sceneToToml(s), "again.toml").scene, s);
+  EXPECT_NO_THROW(validate(s));
+  const weather::Weather w = weatherOf(s);
+  auto sheets = sheetsOf(s, w);
+  ASSERT_EQ(sheets.size(), 2u);
+  EXPECT_EQ(sheets[0].surface, SheetSurface::kPlane);
+  EXPECT_EQ(sheets[1].heightM, 500.0);
+  s.technique = Technique::kDome;
+  s.layers[1].technique = Technique::kVolume;
+  sheets = sheetsOf(s, weatherOf(s));
+  ASSERT_EQ(sheets.size(), 2u);
+  EXPECT_EQ(sheets[0].surface, SheetSurface::kDome);
+  EXPECT_LT(sheets[0].heightM, 3000.0);
+}
+
+// Each as its pattern has it, and all together by random overlap with the volumes.
+TEST(Sheet, CountsInTheDeliveredCover) {
+  Scene s;
+  s.layers = {weather::typicalLayer(weather::Genus::kStratocumulus, 47.0),
+              weather::typicalLayer(weather::Genus::kCirrus, 47.0)};
+  s.layers[0].oktas = s.layers[1].oktas = 4.0;
+  s.layers[1].technique = Technique::kSkyPlane;
+  Sheet sheet;
+  sheet.texels = 128;
+  sheet.oktas = 2.0;
+  s.sheets = {sheet, sheet};
+  s.sheets[1].oktas.reset();
+  const SkyState state = buildSky(s, 0.0);
+  ASSERT_EQ(state.cover.size(), 2u);
+  ASSERT_EQ(state.sheetCover.size(), 2u);
+  EXPECT_NEAR(state.cover[0].deliveredOktas, 4.0, 0.5);
+  EXPECT_NEAR(state.cover[1].deliveredOktas, 4.0, 0.01);
+  EXPECT_EQ(state.sheetCover[0].requestedOktas, 2.0);
+  EXPECT_NEAR(state.sheetCover[0].deliveredOktas, 2.0, 0.01);
+  // Nobody asked for so many oktas of it.
+  EXPECT_EQ(state.sheetCover[1].requestedOktas, state.sheetCover[1].deliveredOktas);
+  double clear = 1.0;
+  for (const auto* covers : {&state.cover, &state.sheetCover})
+    for (const LayerCover& c : *covers) clear *= 1.0 - c.deliveredOktas / 8.0;
+  EXPECT_NEAR(state.skyCover.deliveredOktas, 8.0 * (1.0 - clear), 1e-9);
+  EXPECT_NEAR(state.skyCover.requestedOktas, state.skyCover.deliveredOktas, 0.5);
+  // A sequence carries it.
+  EXPECT_EQ(buildSky(s, 60.0, &state).sheetCover.size(), 2u);
+}
+
+TEST(Sheet, FlaresAreForLenses) {
+  Scene s;
+  s.output.flare = 0.01;
+  EXPECT_NO_THROW(validate(s));  // beside volumes, too
+  s.camera.projection = Projection::kFisheye;
+  EXPECT_THROW(validate(s), ParameterError);
 }
 
 TEST(Sheet, IsReadFromSceneFiles) {

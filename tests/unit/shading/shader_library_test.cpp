@@ -12,6 +12,7 @@
 #include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/program.h"
+#include "welkin/shading/sheet_order.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin::shading {
@@ -195,6 +196,32 @@ TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
           EXPECT_NO_THROW(gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute, defines)));
         }
       }
+    EXPECT_TRUE(context.takeErrors().empty());
+  }
+}
+
+// A march with all kinds of sheets in all tiers among two bands, from within, as a picture and as what
+// arrives.
+TEST(ShaderLibrary, MarchesWithSheetsCompileInEveryDialect) {
+  LightVolumeLayout layout;
+  layout.bands = {{1000.0f, 2000.0f, 0, 4, {0}}, {6000.0f, 7000.0f, 5, 9, {1}}};
+  std::vector<SheetOnRay> sheets;
+  for (const auto surface :
+       {scene::SheetSurface::kPlane, scene::SheetSurface::kSkyPlane, scene::SheetSurface::kDome})
+    for (const auto tier : {scene::SheetTier::kFlat, scene::SheetTier::kEmbossed, scene::SheetTier::kLit}) {
+      sheets.push_back({.surface = surface, .tier = tier});
+      sheets.back().look.heightM = 900.0f * static_cast<float>(sheets.size());
+    }
+  for (const bool es : {false, true}) {
+    gpu::Context context({.api = es ? gpu::Api::kGles : gpu::Api::kGl, .debug = true});
+    const ShaderDialect dialect = es ? ShaderDialect::kEs300 : ShaderDialect::kGl330;
+    ShaderDefines defines = sheetDefines(layout, std::span(sheets).first(6), 3000.0);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NO_THROW(gpu::Program::graphics(assembleShader("pass/fullscreen.vert", dialect),
+                                             assembleShader("pass/sky.frag", dialect, defines)));
+      defines = sheetDefines({}, std::span(sheets).last(4), 3000.0);  // without volumes
+      defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
+    }
     EXPECT_TRUE(context.takeErrors().empty());
   }
 }

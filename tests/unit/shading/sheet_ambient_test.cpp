@@ -130,6 +130,41 @@ TEST_F(SheetAmbientTest, OvercastIsBrighterOverSnow) {
   EXPECT_GT(groundUnder(snow, {layerOf(8.0, 30.0)}).sky, 1.5 * groundUnder(state, {layerOf(8.0, 30.0)}).sky);
 }
 
+// Beside volumes: a sheet that hides nothing changes nothing, and a thick one dims what they had left.
+TEST(SheetAmbient, TakesTheVolumesLightAndDimsIt) {
+  const scene::SkyState state =
+      scene::buildSky(testing::cloudyScene(40.0, {weather::Genus::kCumulus}, 4.0), 0.0);
+  const auto volumes = volumesIn(state);
+  ASSERT_EQ(volumes.size(), 1u);
+  const SheetMatter none = layerOf(0.0, 1.0), thick = layerOf(8.0, 20.0);
+  const auto under = [&](double heightM, const SheetMatter& matter) {
+    const SheetInSky sheet{heightM, &matter};
+    return lightUnder(state, std::span(&sheet, 1), volumes);
+  };
+  const LightUnderSheets same = under(8000.0, none);
+  EXPECT_NEAR(luminanceOf(same.ambient.skyOnGround) / luminanceOf(state.ambient.skyOnGround), 1.0, 1e-5);
+  EXPECT_NEAR(luminanceOf(same.ambient.ground) / luminanceOf(state.ambient.ground), 1.0, 1e-5);
+  EXPECT_NEAR(luminanceOf(same.ambient.haze) / luminanceOf(state.ambient.haze), 1.0, 1e-5);
+  EXPECT_EQ(same.ambient.clearAir, state.ambient.clearAir);
+
+  const LightUnderSheets over = under(8000.0, thick), beneath = under(300.0, thick);
+  for (const LightUnderSheets* light : {&over, &beneath})
+    EXPECT_LT(luminanceOf(light->ambient.ground), 0.6 * luminanceOf(state.ambient.ground));
+  // Over a sheet beneath volumes the sky is brighter by what they diffuse; their shadow from the sun is
+  // drawn, not averaged.
+  EXPECT_GT(luminanceOf(beneath.sheets[0].sky), 1.2 * luminanceOf(over.sheets[0].sky));
+  EXPECT_EQ(beneath.sheets[0].sun, 1.0f);
+}
+
+TEST_F(SheetAmbientTest, SharesOfLightAreThoseOfTheSheetsOverAPlace) {
+  const SheetMatter low = layerOf(4.0, 5.0), high = layerOf(6.0, 2.0);
+  const SheetInSky sheets[] = {{1000.0, &low}, {6000.0, &high}};
+  const LightUnderSheets light = lightUnder(state, sheets);
+  EXPECT_EQ(lightShareUnder(state, sheets, 7000.0), glm::vec4(1.0f));
+  EXPECT_FLOAT_EQ(lightShareUnder(state, sheets, 3000.0).w, light.sunThrough[1]);
+  EXPECT_FLOAT_EQ(lightShareUnder(state, sheets, 0.0).w, light.sunThrough[0] * light.sunThrough[1]);
+}
+
 TEST(SheetAmbient, NightStaysDark) {
   const scene::SkyState night = scene::buildSky(testing::moonlessScene(), 0.0);
   EXPECT_LT(groundUnder(night, {layerOf(8.0, 10.0)}).sky, 0.01);
