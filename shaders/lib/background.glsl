@@ -71,13 +71,19 @@ vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
   return albedo * light / 3.14159265;
 }
 
+vec3 groundThroughAir(vec3 dir, float groundM, float dither) {
+  vec3 inscatter, through;
+  aerial(dir, groundM, inscatter, through);
+  return groundLuminance(dir, groundM, dither) * through + inscatter;
+}
+
+vec3 skyLuminance(vec3 dir) {
+  return atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+}
+
 vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad, float dither) {
-  if (groundM < 1e8) {
-    vec3 inscatter, through;
-    aerial(dir, groundM, inscatter, through);
-    return groundLuminance(dir, groundM, dither) * through + inscatter;
-  }
-  vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+  if (groundM < 1e8) return groundThroughAir(dir, groundM, dither);
+  vec3 sky = skyLuminance(dir);
   if (uDiscs > 0.5) {
     vec3 disc = sunDisc(dir, pixelRad) + moonDisc(dir, pixelRad);
     if (disc.x + disc.y > 0.0)

@@ -16,6 +16,7 @@
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
 #include "welkin/shading/lens_flare.h"
+#include "welkin/shading/backdrop_tiles.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/uniforms.h"
@@ -28,12 +29,20 @@ constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPatter
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
 }  // namespace
+gpu::Program backdropProgram(shading::BackdropKind kind) {
+  return fullscreenProgram(
+      "pass/backdrop.frag",
+      shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""},
+                             {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}});
+}
+
 
 struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
-  gpu::Program backdrop =
-      fullscreenProgram("pass/backdrop.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}});
+  std::array<gpu::Program, 3> backdrops = {backdropProgram(shading::BackdropKind::kAll),
+                                           backdropProgram(shading::BackdropKind::kSky),
+                                           backdropProgram(shading::BackdropKind::kGround)};
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
@@ -46,6 +55,7 @@ struct LiveSky::Impl {
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
+  void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
                  float scale);
   void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   shading::SheetLook look(const ThinLayer& sheet, const shading::ViewParts& view) const {
@@ -103,7 +113,7 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);
   sheetPass.setSky(sky);
-  setUniforms(backdrop, sky);
+  for (gpu::Program& p : backdrops) setUniforms(p, sky);
 }
 
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
@@ -119,7 +129,26 @@ void LiveSky::Impl::updateAmbient() {
 }
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
-  gpu::Program& p = backdrop;
+  const sky::Body &sun = state->ephemeris.sun, &moon = state->ephemeris.moon;
+  const shading::BackdropTiles tiles = shading::backdropTiles(
+      view, target.area.width, target.area.height, state->clouds->earthRadiusM(),
+      {shading::BackdropDisc{glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad)},
+       shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
+      state->scene.output.sunDisc);
+  for (std::size_t kind = 0; kind < backdrops.size(); ++kind) {
+    bool set = false;
+    for (int i = 0; i < tiles.count; ++i) {
+      const shading::BackdropTile& t = tiles.tiles[static_cast<std::size_t>(i)];
+      if (static_cast<std::size_t>(t.kind) != kind) continue;
+      if (!set) setBackdrop(backdrops[kind], view, target, scale);
+      set = true;
+      triangle.draw(backdrops[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
+    }
+  }
+}
+
+void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
+                                float scale) {
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
   p.set("uEnuFromCamera", view.enuFromCamera);
@@ -142,7 +171,6 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   }
   p.set("uShadowMean", others);
   p.set("uShadowCount", static_cast<int>(shadows));
-  triangle.draw(p, target);
 }
 
 void LiveSky::Impl::drawSheet(const ThinLayer& sheet, const shading::ViewParts& view,
