@@ -11,12 +11,13 @@
 #include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/octaves_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
-#include "welkin/shading/lens_flare.h"
 #include "welkin/shading/backdrop_tiles.h"
+#include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/uniforms.h"
@@ -28,7 +29,6 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
-}  // namespace
 gpu::Program backdropProgram(shading::BackdropKind kind) {
   return fullscreenProgram(
       "pass/backdrop.frag",
@@ -36,10 +36,12 @@ gpu::Program backdropProgram(shading::BackdropKind kind) {
                              {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}});
 }
 
+}  // namespace
 
 struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
+  OctavesPass octavesPass;
   std::array<gpu::Program, 3> backdrops = {backdropProgram(shading::BackdropKind::kAll),
                                            backdropProgram(shading::BackdropKind::kSky),
                                            backdropProgram(shading::BackdropKind::kGround)};
@@ -54,8 +56,8 @@ struct LiveSky::Impl {
   void update(const scene::SkyState& next);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
-  void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
+  void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
   void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   shading::SheetLook look(const ThinLayer& sheet, const shading::ViewParts& view) const {
@@ -95,7 +97,8 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     sheets.clear();
     scene::Scene thin = state->scene;
     if (thin.technique == scene::Technique::kVolume)
-      throw ParameterError("a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
+      throw ParameterError(
+          "a live sky draws thin sheets; expected technique plane, skyplane, dome, octaves or auto");
     if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
     const std::vector<scene::Sheet> wanted = scene::sheetsOf(thin, state->weather);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -104,11 +107,14 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
       const auto above = std::find_if(sheets.begin(), sheets.end(), [&](const ThinLayer& s) {
         return s.sheet.heightM > made.sheet.heightM;
       });
+      if (made.living) octavesPass.prepare(*made.living);
       sheets.insert(above, std::move(made));
     }
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
+  for (ThinLayer& sheet : sheets)
+    if (sheet.living) octavesPass.compose(*sheet.living, state->secondsAfter, sheet.flat);
   updateAmbient();
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);

@@ -55,7 +55,7 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"flare", "",
        "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; with "
-       "technique plane, skyplane or dome",
+       "technique plane, skyplane, dome or octaves",
        0, 1},
       o.flare);
   v.value({"frames", "", "number of pictures in a sequence or video", 1, 1000000}, o.frames);
@@ -78,16 +78,19 @@ void describe(Scene& s, ParamVisitor& v) {
   v.value({"visibility_m", "m",
            "meteorological optical range at the ground; absent: from the report, else 40 km", 10, 300000},
           s.visibilityM);
-  v.choice({"technique", "",
-            "how the layers are drawn: as volumes (auto, volume) or, in next to no time, as thin sheets on "
-            "planes, on planes bent over the earth (skyplane), or on domes"},
-           s.technique);
+  v.choice(
+      {"technique", "",
+       "how the layers are drawn: as volumes (auto, volume) or, in next to no time, as thin sheets on "
+       "planes, on planes bent over the earth (skyplane), on domes, or on bent planes with living octaves"},
+      s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
   v.group({"camera", "", "where the eye is and what it sees"}, s.camera);
   v.group({"output", "", "the picture"}, s.output);
   v.group({"ground", "", "the ground below"}, s.ground);
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
+  v.group({"octaves", "", "the patterns of layers with technique octaves, which change as clouds do"},
+          s.octaves);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
   v.list({"sheet", "", "a thin layer of cloud by hand, drawn beside those of the weather"}, s.sheets);
 }
@@ -111,13 +114,16 @@ void validate(const Scene& s) {
                          std::to_string(kMaxSheets));
   for (const Sheet& sheet : s.sheets) validate(sheet);
   if (!s.sheets.empty() && !drawsSheets(s.technique))
-    throw ParameterError("[[sheet]] is drawn with technique plane, skyplane or dome, not beside volumes");
+    throw ParameterError(
+        "[[sheet]] is drawn with technique plane, skyplane, dome or octaves, not beside volumes");
   if (s.output.flare > 0.0 && !drawsSheets(s.technique))
-    throw ParameterError("output.flare is drawn with technique plane, skyplane or dome, not beside volumes");
+    throw ParameterError(
+        "output.flare is drawn with technique plane, skyplane, dome or octaves, not beside volumes");
 }
 
 bool drawsSheets(Technique technique) {
-  return technique == Technique::kPlane || technique == Technique::kSkyPlane || technique == Technique::kDome;
+  return technique == Technique::kPlane || technique == Technique::kSkyPlane ||
+         technique == Technique::kDome || technique == Technique::kOctaves;
 }
 
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather) {
@@ -129,6 +135,8 @@ std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather)
     for (const weather::Layer& layer : weather.layers) {
       sheets.push_back(sheetOf(layer, surface));
       sheets.back().tier = scene.tier;
+      if (scene.technique == Technique::kOctaves)
+        sheets.back() = withLivingOctaves(sheets.back(), scene.octaves);
     }
   }
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());

@@ -68,6 +68,7 @@ enum class Technique {
   kPlane,   // thin sheets on the surface of that name (SheetSurface)
   kSkyPlane,
   kDome,
+  kOctaves,  // sky planes with living octaves
 };
 
 struct Scene {
@@ -80,6 +81,7 @@ struct Scene {
   std::vector<weather::Layer> layers;  // the weather by hand
   Technique technique = Technique::kAuto;
   SheetTier tier = SheetTier::kLit;  // of layers that are drawn as sheets
+  LayerOctaves octaves;              // of layers with the technique octaves
   std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
   sky::AtmosphereParams atmosphere;
   Ground ground;
@@ -113,7 +115,7 @@ inline constexpr auto kEnumNames<scene::Projection> =
     std::array<std::string_view, 4>{"perspective", "fisheye", "equirect", "cubemap"};
 template <>
 inline constexpr auto kEnumNames<scene::Technique> =
-    std::array<std::string_view, 5>{"auto", "volume", "plane", "skyplane", "dome"};
+    std::array<std::string_view, 6>{"auto", "volume", "plane", "skyplane", "dome", "octaves"};
 template <>
 inline constexpr auto kEnumNames<scene::Quality> =
     std::array<std::string_view, 4>{"low", "medium", "high", "ultra"};

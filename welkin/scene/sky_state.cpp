@@ -88,12 +88,12 @@ AmbientLight ambientLight(const SkyState& s) {
 }
 
 // The cover of layers drawn as sheets: each as its pattern has it, all together by random overlap.
-DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather) {
+DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather, double secondsAfter) {
   DeliveredCover cover;
   const std::vector<Sheet> sheets = sheetsOf(scene, weather);
   double clear = 1.0;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    const double share = deliveredCover(sheets[i], sheetSeed(scene, i));
+    const double share = deliveredCover(sheets[i], sheetSeed(scene, i), secondsAfter);
     cover.layers.push_back({weather.layers[i].oktas, kOktas * share});
     clear *= 1.0 - share;
   }
@@ -136,8 +136,8 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     s.cover = previous->cover;
     s.skyCover = previous->skyCover;
   } else {
-    DeliveredCover cover =
-        drawsSheets(scene.technique) ? sheetCover(scene, s.weather) : measureCover(s.weather, *s.clouds);
+    DeliveredCover cover = drawsSheets(scene.technique) ? sheetCover(scene, s.weather, secondsAfter)
+                                                        : measureCover(s.weather, *s.clouds);
     s.cover = std::move(cover.layers);
     s.skyCover = cover.sky;
   }
