@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Draws the gallery anew: refresh.sh PROGRAM. Needs ImageMagick.
+# Draws the gallery anew: refresh.sh PROGRAM. Needs ImageMagick and ffmpeg.
 set -euo pipefail
 (($# == 1)) || { echo "usage: refresh.sh PROGRAM" >&2; exit 2; }
 program="$(readlink -f "$1")"
@@ -34,6 +34,8 @@ picture mixed_noon "$here/mixed.toml" --size 960x540
 picture mixed_sunset "$here/mixed.toml" --time 2026-06-21T19:05:00Z --look 285,14 --size 960x540
 picture mixed_between "$here/mixed.toml" --eye 4000 --look 240,2 --size 960x540
 picture mixed_above "$here/mixed.toml" --eye 12000 --look 240,-12 --size 960x540
+picture living "$here/living.toml" --at 300 --size 960x540
+"$program" render "$here/living.toml" --size 320x180 --frames 240 --fps 24 --speed 60 -o "$here/formation.webm"
 picture flare_right "$here/flare.toml" --look 250,16 --size 640x360
 picture flare_high "$here/flare.toml" --look 288,8 --size 640x360
 picture flare_middle "$here/flare.toml" --look 276.3,26.9 --size 640x360

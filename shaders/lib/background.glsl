@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind the clouds: the clear sky with its discs, or the ground.
 //
-// Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q, float dither): the share of the key
+// Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
 // light that clouds let through to the ground at q.
 
 uniform vec3 uGroundAlbedo;
@@ -58,12 +58,12 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
 }
 
-vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
+vec3 groundLuminance(vec3 dir, float distanceM) {
   vec3 p = vec3(0.0, 0.0, uEyeM) + dir * distanceM;
   vec3 q = cloudPosition(p, uEarthRadiusM);
   vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
   float incidence = max(dot(up, uKeyDirection), 0.0);
-  vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q), dither)) + uSkyOnGround;
+  vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q))) + uSkyOnGround;
   // Fields and woods: the albedo wanders by a third about its mean over some hundred metres to kilometres.
   vec2 a = textureLod(uPlacement, vec2(q) / 9000.0, 0.0).xy;
   float b = textureLod(uPlacement, vec2(q.y, -q.x) / 31000.0, 0.0).y;
@@ -71,13 +71,19 @@ vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
   return albedo * light / 3.14159265;
 }
 
-vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad, float dither) {
-  if (groundM < 1e8) {
-    vec3 inscatter, through;
-    aerial(dir, groundM, inscatter, through);
-    return groundLuminance(dir, groundM, dither) * through + inscatter;
-  }
-  vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+vec3 groundThroughAir(vec3 dir, float groundM) {
+  vec3 inscatter, through;
+  aerial(dir, groundM, inscatter, through);
+  return groundLuminance(dir, groundM) * through + inscatter;
+}
+
+vec3 skyLuminance(vec3 dir) {
+  return atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+}
+
+vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad) {
+  if (groundM < 1e8) return groundThroughAir(dir, groundM);
+  vec3 sky = skyLuminance(dir);
   if (uDiscs > 0.5) {
     vec3 disc = sunDisc(dir, pixelRad) + moonDisc(dir, pixelRad);
     if (disc.x + disc.y > 0.0)

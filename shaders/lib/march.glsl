@@ -193,13 +193,13 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
 
 #ifdef WELKIN_SHEETS
 // texel: of the sheet's pattern at the hit; way: of it on the way to the sun.
-void addSheet(int i, int tier, SheetHit hit, vec4 texel, vec3 way, vec3 dir, vec2 phases, float cosSun, float dither,
+void addSheet(int i, int tier, SheetHit hit, vec4 texel, vec3 way, vec3 dir, vec2 phases, float cosSun,
               inout MarchState state) {
   float alpha = hit.most - hit.most * exp(-sheetDepth(uSheets[i], texel.x));
   if (alpha <= 0.0) return;
   vec3 inscatter, through;
   aerial(dir, hit.distanceM, inscatter, through);
-  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(hit.p, uEarthRadiusM), dither));
+  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(hit.p, uEarthRadiusM)));
   vec3 light = sheetLuminance(i, tier, hit, texel, way, sun, phases.x, cosSun, dir.z);
   state.sheets += state.transmittance * alpha * (light * through + inscatter);
   state.transmittance *= 1.0 - alpha;
@@ -235,7 +235,7 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
                  WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.y, level),                                            \
                  WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.z, level));                                           \
     }                                                                                                               \
-    addSheet(i, tier, hit, texel, way, dir, phases, cosSun, dither.y, state);                                       \
+    addSheet(i, tier, hit, texel, way, dir, phases, cosSun, state);                                                 \
   }
 #define WELKIN_MEET_DOWN(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, false)
 #define WELKIN_MEET_UP(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, true)

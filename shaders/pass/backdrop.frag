@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind thin clouds, for any OpenGL camera: the clear sky, the discs, the ground with the shadows of the sheets.
+// WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
 
 #include "lib/phase.glsl"
 #include "lib/atmosphere.glsl"
@@ -16,12 +17,19 @@ uniform float uScale;             // written value for each cd/m2
 
 layout(location = 0) out vec4 outColor;
 
-float groundSunlight(vec2 q, float dither) { return sheetsSunlight(vec3(q, 0.0)); }
+float groundSunlight(vec2 q) { return sheetsSunlight(vec3(q, 0.0)); }
 
 #include "lib/background.glsl"
 
 void main() {
   vec2 clip = (gl_FragCoord.xy - uViewportPx.xy) / uViewportPx.zw * 2.0 - 1.0;
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
-  outColor = vec4(uScale * backgroundLuminance(dir, groundDistance(dir), uPixelRad, 0.5), 1.0);
+#if WELKIN_BACKDROP == 1
+  vec3 luminance = skyLuminance(dir);
+#elif WELKIN_BACKDROP == 2
+  vec3 luminance = groundThroughAir(dir, groundDistance(dir));
+#else
+  vec3 luminance = backgroundLuminance(dir, groundDistance(dir), uPixelRad);
+#endif
+  outColor = vec4(uScale * luminance, 1.0);
 }

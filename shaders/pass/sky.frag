@@ -20,11 +20,11 @@
 #include "lib/march.glsl"
 
 #ifdef WELKIN_SHEETS
-float groundSunlight(vec2 q, float dither) {
+float groundSunlight(vec2 q) {
   return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))) * sheetsSunlight(vec3(q, 0.0));
 }
 #else
-float groundSunlight(vec2 q, float dither) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))); }
+float groundSunlight(vec2 q) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))); }
 #endif
 
 #include "lib/background.glsl"
@@ -56,7 +56,7 @@ void main() {
   return;
 #endif
   vec3 color = vec3(0.0);
-  if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad, dither.y);
+  if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad);
 #ifdef WELKIN_SHEETS
   color += ray.sheets;
   if (ray.hidden > 0.0001) {

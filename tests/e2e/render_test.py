@@ -110,6 +110,36 @@ class Frames(ProgramTest):
         self.assertEqual([f["path"] for f in frames], ["f_000.png", "f_001.png", "f_002.png"])
 
 
+class LivingOctaves(ProgramTest):
+    LIVING = [*CUMULUS, *TINY, "--technique", "octaves", "--look", "180,30"]
+
+    def test_each_frame_is_the_still_of_its_instant(self):
+        self.succeed("render", *self.LIVING, "-o", "f_%d.png", "--frames", "3", "--fps", "2", "--speed", "120", "--report",
+                     "r.json")
+        self.succeed("render", *self.LIVING, "-o", "still.png", "--at", "120")
+        self.assertEqual((self.folder / "f_2.png").read_bytes(), (self.folder / "still.png").read_bytes())
+        self.assertNotEqual((self.folder / "f_0.png").read_bytes(), (self.folder / "f_2.png").read_bytes())
+        r = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(r["scene"]["technique"], "octaves")
+        cover = r["layers"][0]
+        self.assertAlmostEqual(cover["delivered_oktas"], cover["requested_oktas"], delta=0.5)
+
+    def test_scene_files_choose_kernels_and_blends(self):
+        pictures = set()
+        for kernel in ("gradient", "pallister", "course"):
+            for blend in ("variance-preserving", "linear"):
+                self.write("s.toml", 'technique = "octaves"\n[octaves]\nresolution = 128\ncount = 4\nkernel = "%s"\nblend = "%s"\n'
+                           % (kernel, blend))
+                self.succeed("render", "s.toml", *self.LIVING, "--at", "100", "-o", "x.png")
+                pictures.add((self.folder / "x.png").read_bytes())
+        self.assertEqual(len(pictures), 6)
+
+    def test_what_cannot_live_is_said(self):
+        self.write("s.toml", 'technique = "dome"\n[[sheet]]\nsurface = "dome"\ntexels = 64\npattern = "octaves"\n')
+        message = self.fail_with(1, "living octaves", "render", "s.toml", "-o", "x.png")
+        self.assertIn("expected surface plane or skyplane", message)
+
+
 class Interruption(ProgramTest):
     """The signal is sent once the program has shown that it is at work, on its terminal or by its files, and never after a time that
     another machine may need for starting."""

@@ -10,10 +10,12 @@
 #include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/octaves_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
+#include "welkin/shading/backdrop_tiles.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
@@ -27,13 +29,22 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
+gpu::Program backdropProgram(shading::BackdropKind kind) {
+  return fullscreenProgram(
+      "pass/backdrop.frag",
+      shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""},
+                             {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}});
+}
+
 }  // namespace
 
 struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
-  gpu::Program backdrop =
-      fullscreenProgram("pass/backdrop.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}});
+  OctavesPass octavesPass;
+  std::array<gpu::Program, 3> backdrops = {backdropProgram(shading::BackdropKind::kAll),
+                                           backdropProgram(shading::BackdropKind::kSky),
+                                           backdropProgram(shading::BackdropKind::kGround)};
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
@@ -45,6 +56,7 @@ struct LiveSky::Impl {
   void update(const scene::SkyState& next);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
+  void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
   void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
@@ -87,17 +99,21 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     for (const weather::Layer& layer : state->weather.layers)
       if (scene::techniqueOf(thin, layer) == scene::Technique::kVolume)
         throw ParameterError(
-            "a live sky draws thin sheets; expected technique plane, skyplane, dome or auto");
+            "a live sky draws thin sheets; expected technique plane, skyplane, dome, octaves or auto");
     if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
     sheets = makeThinLayers(thin, state->weather, state->clouds->earthRadiusM());
+    for (const ThinLayer& sheet : sheets)
+      if (sheet.living) octavesPass.prepare(*sheet.living);
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
+  for (ThinLayer& sheet : sheets)
+    if (sheet.living) octavesPass.compose(*sheet.living, state->secondsAfter, sheet.flat);
   updateAmbient();
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);
   sheetPass.setSky(sky);
-  setUniforms(backdrop, sky);
+  for (gpu::Program& p : backdrops) setUniforms(p, sky);
 }
 
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
@@ -113,7 +129,26 @@ void LiveSky::Impl::updateAmbient() {
 }
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
-  gpu::Program& p = backdrop;
+  const sky::Body &sun = state->ephemeris.sun, &moon = state->ephemeris.moon;
+  const shading::BackdropTiles tiles = shading::backdropTiles(
+      view, target.area.width, target.area.height, state->clouds->earthRadiusM(),
+      {shading::BackdropDisc{glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad)},
+       shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
+      state->scene.output.sunDisc);
+  for (std::size_t kind = 0; kind < backdrops.size(); ++kind) {
+    bool set = false;
+    for (int i = 0; i < tiles.count; ++i) {
+      const shading::BackdropTile& t = tiles.tiles[static_cast<std::size_t>(i)];
+      if (static_cast<std::size_t>(t.kind) != kind) continue;
+      if (!set) setBackdrop(backdrops[kind], view, target, scale);
+      set = true;
+      triangle.draw(backdrops[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
+    }
+  }
+}
+
+void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
+                                float scale) {
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
   p.set("uEnuFromCamera", view.enuFromCamera);
@@ -136,7 +171,6 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   }
   p.set("uShadowMean", others);
   p.set("uShadowCount", static_cast<int>(shadows));
-  triangle.draw(p, target);
 }
 
 void LiveSky::Impl::drawSheet(const ThinLayer& sheet, const shading::ViewParts& view,

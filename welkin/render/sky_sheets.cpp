@@ -25,6 +25,11 @@ void SkySheets::update(const scene::SkyState& state) {
     layers_ = makeThinLayers(state.scene, state.weather, earthRadiusM);
     scene_ = state.scene;
   }
+  for (ThinLayer& layer : layers_) {
+    if (!layer.living) continue;
+    if (!octaves_) octaves_.emplace();
+    octaves_->compose(*layer.living, state.secondsAfter, layer.flat);
+  }
   onRay_.clear();
   if (layers_.empty()) return;
   const shading::LightUnderSheets light = shading::lightUnder(state, inSky(), shading::volumesIn(state));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "welkin/gpu/program.h"
+#include "welkin/render/octaves_pass.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/thin_layer.h"
 #include "welkin/scene/sky_state.h"
@@ -36,6 +37,7 @@ class SkySheets {
 
   std::optional<scene::Scene> scene_;  // that the layers are of
   std::vector<ThinLayer> layers_;      // from the ground up
+  std::optional<OctavesPass> octaves_;
   std::vector<shading::SheetOnRay> onRay_;
   scene::AmbientLight ambient_;
 };

@@ -25,6 +25,11 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
     layer.matter = shading::matterOf(sheet, pattern.data, seed);
     layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
     layer.volume.makeMipmaps();
+  } else if (sheet.pattern == scene::SheetPattern::kOctaves) {
+    const int n = static_cast<int>(sheet.texels);
+    layer.living.emplace(sheet, seed);
+    layer.matter = shading::matterOf(sheet, layer.living->pattern().samples(), seed);
+    layer.flat = gpu::Texture2D(n, n, options);  // composed at every instant
   } else {
     const Image<float> pattern = scene::flatPattern(sheet, seed);
     layer.matter = shading::matterOf(sheet, pattern.data, seed);

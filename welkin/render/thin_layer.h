@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "welkin/gpu/mesh.h"
 #include "welkin/gpu/texture.h"
+#include "welkin/render/octaves_pass.h"
 #include "welkin/scene/scene.h"
 #include "welkin/shading/sheet_ambient.h"
 #include "welkin/shading/sheet_look.h"
@@ -19,8 +21,9 @@ struct ThinLayer {
   shading::LightOnSheet light;
   float sunThrough = 1.0f;  // mean share of the key light
   gpu::Mesh mesh;
-  gpu::Texture2D flat;    // the pattern, or
-  gpu::Texture3D volume;  // of a dome
+  gpu::Texture2D flat;                  // the pattern, or
+  gpu::Texture3D volume;                // of a dome
+  std::optional<LivingTexture> living;  // what `flat` is composed from, where it changes over time
   const gpu::Texture& pattern() const {
     return flat.id() ? static_cast<const gpu::Texture&>(flat) : static_cast<const gpu::Texture&>(volume);
   }

@@ -108,14 +108,14 @@ std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weat
 }
 
 DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
-                            const field::CloudField& clouds) {
+                            const field::CloudField& clouds, double secondsAfter) {
   DeliveredCover cover;
   const std::vector<Sheet> sheets = sheetsOf(scene, weather);
   std::vector<float> together(kReportView.directions);
   double clear = 1.0;  // the share of the sky that sheets leave
   std::size_t sheet = 0;
   const auto addSheet = [&] {
-    const double share = deliveredCover(sheets[sheet], sheetSeed(scene, sheet));
+    const double share = deliveredCover(sheets[sheet], sheetSeed(scene, sheet), secondsAfter);
     ++sheet;
     clear *= 1.0 - share;
     return kOktas * share;

@@ -56,6 +56,6 @@ struct DeliveredCover {
 
 // Volumes as seen from the ground, sheets as their patterns have it; a sheet lies over all others at random.
 DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
-                            const field::CloudField& clouds);
+                            const field::CloudField& clouds, double secondsAfter);
 
 }  // namespace welkin::scene

@@ -55,7 +55,7 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"flare", "",
        "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; with "
-       "technique plane, skyplane or dome",
+       "technique plane, skyplane, dome or octaves",
        0, 1},
       o.flare);
   v.value({"frames", "", "number of pictures in a sequence or video", 1, 1000000}, o.frames);
@@ -80,7 +80,10 @@ void describe(Scene& s, ParamVisitor& v) {
           s.visibilityM);
   v.choice({"technique", "",
             "how layers that name no technique of their own are drawn: as volumes (auto, volume) or, in next "
-            "to no time, as thin sheets on planes, on planes bent over the earth (skyplane), or on domes"},
+            "to no "
+            "time, as thin sheets on planes, on planes bent over the earth (skyplane), on domes, or on bent "
+            "planes "
+            "with living octaves"},
            s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
@@ -88,6 +91,8 @@ void describe(Scene& s, ParamVisitor& v) {
   v.group({"output", "", "the picture"}, s.output);
   v.group({"ground", "", "the ground below"}, s.ground);
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
+  v.group({"octaves", "", "the patterns of layers with technique octaves, which change as clouds do"},
+          s.octaves);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
   v.list({"sheet", "",
           "a thin layer of cloud by hand, drawn beside those of the weather, volumes and sheets alike"},
@@ -117,7 +122,8 @@ void validate(const Scene& s) {
 }
 
 bool drawsSheets(Technique technique) {
-  return technique == Technique::kPlane || technique == Technique::kSkyPlane || technique == Technique::kDome;
+  return technique == Technique::kPlane || technique == Technique::kSkyPlane ||
+         technique == Technique::kDome || technique == Technique::kOctaves;
 }
 
 Technique techniqueOf(const Scene& scene, const weather::Layer& layer) {
@@ -138,6 +144,7 @@ std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather)
                                                                  : SheetSurface::kSkyPlane;
     sheets.push_back(sheetOf(layer, surface));
     sheets.back().tier = scene.tier;
+    if (technique == Technique::kOctaves) sheets.back() = withLivingOctaves(sheets.back(), scene.octaves);
   }
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
   return sheets;

@@ -73,6 +73,7 @@ struct Scene {
   std::vector<weather::Layer> layers;      // the weather by hand
   Technique technique = Technique::kAuto;  // of layers that name none
   SheetTier tier = SheetTier::kLit;        // of layers that are drawn as sheets
+  LayerOctaves octaves;                    // of layers with the technique octaves
   std::vector<Sheet> sheets;               // thin layers by hand, beside the weather's
   sky::AtmosphereParams atmosphere;
   Ground ground;

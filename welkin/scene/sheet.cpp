@@ -9,6 +9,7 @@
 #include "welkin/field/quantile.h"
 #include "welkin/noise/noise.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/living_pattern.h"
 
 namespace welkin::scene {
 namespace {
@@ -62,13 +63,40 @@ void describe(Sheet& s, ParamVisitor& v) {
   v.value({"rise_mps", "m/s", "speed of the pattern up through a dome, which forms and dissolves its clouds",
            -50, 50},
           s.riseMps);
+  v.choice(
+      {"pattern", "",
+       "noise: the same at all times; octaves: living ones, which change; on planes alone, at most 8 of them "
+       "with 1024 texels and a frequency of 32"},
+      s.pattern);
+  describe(s.living, v);
 }
+
+namespace {
+
+// What living octaves cannot do.
+void validateLiving(const Sheet& s) {
+  const auto require = [](bool good, const std::string& problem) {
+    if (!good) throw ParameterError("living octaves: " + problem);
+  };
+  require(s.surface != SheetSurface::kDome,
+          "a dome needs a volume of noise; expected surface plane or skyplane, or pattern noise");
+  require(s.texels <= kMaxLivingTexels,
+          "texels is " + std::to_string(s.texels) + "; expected at most " + std::to_string(kMaxLivingTexels));
+  require(s.octaves <= kMaxLivingOctaves, "octaves is " + std::to_string(s.octaves) + "; expected at most " +
+                                              std::to_string(kMaxLivingOctaves));
+  require(s.living.kernel != OctaveKernel::kGradient || s.frequency <= kMaxLivingFrequency,
+          "frequency is " + std::to_string(s.frequency) + "; expected at most " +
+              std::to_string(kMaxLivingFrequency));
+}
+
+}  // namespace
 
 void validate(const Sheet& s) {
   if (s.surface == SheetSurface::kDome && s.texels > kMaxDomeTexels)
     throw ParameterError("a dome's pattern of " + std::to_string(s.texels) +
                          " texels a side is too large; expected at most " +
                          std::to_string(static_cast<int>(kMaxDomeTexels)));
+  if (s.pattern == SheetPattern::kOctaves) validateLiving(s);
 }
 
 Sheet sheetOf(SheetPreset preset) {
@@ -129,8 +157,23 @@ Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
   return s;
 }
 
+Sheet withLivingOctaves(Sheet sheet, const LayerOctaves& octaves) {
+  // Fewer cells in a tile, as its texels are fewer as well.
+  constexpr std::int64_t kCells = 16, kSourceCells = 32;
+  const std::int64_t cells = octaves.living.kernel == OctaveKernel::kGradient ? kCells : kSourceCells;
+  sheet.pattern = SheetPattern::kOctaves;
+  sheet.living = octaves.living;
+  sheet.texels = octaves.resolution;
+  sheet.octaves = octaves.count;
+  sheet.tileM = std::clamp(sheet.tileM * static_cast<double>(cells) / static_cast<double>(sheet.frequency),
+                           100.0, 500000.0);
+  sheet.frequency = cells;
+  return sheet;
+}
+
 Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed) {
   const int n = static_cast<int>(sheet.texels);
+  if (sheet.pattern == SheetPattern::kOctaves) return LivingPattern(sheet, seed).image(0.0, n);
   Image<float> pattern(n, n, 1);
   noise::Noise(patternOf(sheet, seed)).fill(noise::Grid::tile({n, n, 1}), std::span(pattern.data));
   return pattern;
@@ -157,13 +200,20 @@ field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pa
                           law.bias > visible ? visible : 0.0);
 }
 
-double deliveredCover(const Sheet& sheet, std::uint64_t seed) {
-  const auto visible = [&](std::span<const float> pattern) {
-    const field::Condensation law = condensationOf(sheet, pattern);
+double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter) {
+  const auto above = [](const field::Condensation& law, std::span<const float> pattern) {
     // Rounded down, as the texel on the threshold itself counts.
     const double least = law.threshold + (1.0 - 1e-6) * kVisibleDepth / law.k;
     const auto count = std::count_if(pattern.begin(), pattern.end(), [&](float p) { return p >= least; });
     return static_cast<double>(count) / static_cast<double>(pattern.size());
+  };
+  if (sheet.pattern == SheetPattern::kOctaves) {
+    const LivingPattern living(sheet, seed);
+    const Image<float> now = living.image(living.shown(secondsAfter), static_cast<int>(sheet.texels));
+    return above(condensationOf(sheet, living.samples()), now.data);
+  }
+  const auto visible = [&](std::span<const float> pattern) {
+    return above(condensationOf(sheet, pattern), pattern);
   };
   if (sheet.surface == SheetSurface::kDome) return visible(domePattern(sheet, seed).data);
   return visible(flatPattern(sheet, seed).data);

@@ -15,6 +15,7 @@
 #include "welkin/core/image.h"
 #include "welkin/core/params.h"
 #include "welkin/field/condensation.h"
+#include "welkin/scene/living_octaves.h"
 #include "welkin/weather/weather.h"
 
 namespace welkin::scene {
@@ -30,6 +31,12 @@ enum class SheetTier {
   kFlat,      // one light for all of it
   kEmbossed,  // bright where the pattern falls off towards the sun
   kLit,       // by its optical depth towards the sun
+};
+
+// Where the pattern of a sheet comes from.
+enum class SheetPattern {
+  kNoise,    // a fractal sum of gradient noise, the same at all times
+  kOctaves,  // octaves that change over time (scene/living_pattern.h); not on a dome
 };
 
 struct Sheet {
@@ -50,6 +57,8 @@ struct Sheet {
   double windFromDeg = 270.0;
   double windSpeedMps = 8.0;
   double riseMps = 0.0;  // of the pattern through a dome: how fast its clouds form and go
+  SheetPattern pattern = SheetPattern::kNoise;
+  LivingOctaves living;  // of the pattern octaves
 
   bool operator==(const Sheet&) const = default;
 };
@@ -64,8 +73,11 @@ Sheet sheetOf(SheetPreset preset);
 // as its genus has them.
 Sheet sheetOf(const weather::Layer& layer, SheetSurface surface);
 
+// The same sheet with living octaves for its pattern, its clouds as large as they were.
+Sheet withLivingOctaves(Sheet sheet, const LayerOctaves& octaves);
+
 // The pattern, in [0, 1]: texels x texels, or for a dome a volume of texels a side, one channel. Tiles.
-// `seed`: one pattern for each.
+// `seed`: one pattern for each. Of living octaves: at the scene's time.
 Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed);
 Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed);
 
@@ -74,7 +86,7 @@ Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed);
 field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern);
 
 // The share of the whole pattern that is cloud to an observer: what it covers of the sky, but for chance.
-double deliveredCover(const Sheet& sheet, std::uint64_t seed);
+double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter = 0.0);
 
 }  // namespace welkin::scene
 
@@ -85,4 +97,6 @@ inline constexpr auto kEnumNames<scene::SheetSurface> =
 template <>
 inline constexpr auto kEnumNames<scene::SheetTier> =
     std::array<std::string_view, 3>{"flat", "embossed", "lit"};
+template <>
+inline constexpr auto kEnumNames<scene::SheetPattern> = std::array<std::string_view, 2>{"noise", "octaves"};
 }  // namespace welkin

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "welkin/core/units.h"
@@ -36,14 +37,33 @@ double diffuseTransmittance(const Scene& scene, const weather::Weather& weather,
   return through;
 }
 
+ClearSkyKey clearSkyKey(const SkyState& s, double atS, const SkyState* previous) {
+  if (previous)
+    for (const ClearSkyKey& key : previous->clearSky)
+      if (key.atS == atS) return key;
+  const sky::Atmosphere& atmosphere = *s.atmosphere;
+  const std::vector<sky::Light> lights = lightsAt(s.scene, atS).lights;
+  const double ground = atmosphere.groundAltitudeM();
+  return {atS, atmosphere.skyIlluminance(ground, lights),
+          atmosphere.skyIlluminance(std::max(10000.0, ground + 1000.0), lights)};
+}
+
+std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s, const SkyState* previous) {
+  const double before = std::floor(s.secondsAfter / ClearSkyKey::kKeyS) * ClearSkyKey::kKeyS;
+  const ClearSkyKey key = clearSkyKey(s, before, previous);
+  if (s.secondsAfter == before) return {key, key};
+  return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS, previous)};
+}
+
 AmbientLight ambientLight(const SkyState& s) {
   AmbientLight a;
   const sky::Atmosphere& atmosphere = *s.atmosphere;
   const float pi = static_cast<float>(kPi);
-  const glm::vec3 skyOnGround = atmosphere.skyIlluminance(atmosphere.groundAltitudeM(), s.lights);
+  const ClearSkyKey &before = s.clearSky[0], &after = s.clearSky[1];
+  const float w = static_cast<float>((s.secondsAfter - before.atS) / ClearSkyKey::kKeyS);
+  const glm::vec3 skyOnGround = glm::mix(before.ground, after.ground, w);
   a.skyLow = skyOnGround / pi;
-  a.skyHigh =
-      atmosphere.skyIlluminance(std::max(10000.0, atmosphere.groundAltitudeM() + 1000.0), s.lights) / pi;
+  a.skyHigh = glm::mix(before.high, after.high, w) / pi;
   const float through = static_cast<float>(diffuseTransmittance(s.scene, s.weather, *s.clouds));
   // What falls on the clouds has not yet passed the air beneath their tops: the highest that are thick enough
   // to scatter it all.
@@ -112,7 +132,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     s.sheetCover = previous->sheetCover;
     s.skyCover = previous->skyCover;
   } else {
-    DeliveredCover cover = measureCover(scene, s.weather, *s.clouds);
+    DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter);
     s.cover = std::move(cover.layers);
     s.sheetCover = std::move(cover.sheets);
     s.skyCover = cover.sky;
@@ -128,6 +148,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.lights = std::move(lights.lights);
   s.litBySun = lights.bySun;
   s.headingDeg = headingOf(s);
+  s.clearSky = clearSkyKeys(s, previous);
   s.ambient = ambientLight(s);
   return s;
 }

@@ -3,6 +3,7 @@
 // calibrated, lights placed, atmosphere computed. A pure function of (scene, instant).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,14 @@ struct AmbientLight {
   glm::vec3 haze{0};         // mean luminance about the eye where it does not, cd/m2
 };
 
+// Illuminance by the clear sky alone of a plane facing up, at a key instant: whole multiples of kKeyS. In
+// between it is blended, as it takes milliseconds to compute: linearly, within half a hundredth at dusk.
+struct ClearSkyKey {
+  static constexpr double kKeyS = 30.0;
+  double atS = 0.0;
+  glm::vec3 ground{0}, high{0};  // at the ground, at 10 km; lux
+};
+
 // Sun and moon of a scene at an instant.
 struct SkyLights {
   UtcTime time;
@@ -45,6 +54,7 @@ struct SkyState {
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::shared_ptr<const field::CloudField> clouds;
   std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
+  std::array<ClearSkyKey, 2> clearSky;        // before and after the instant
   AmbientLight ambient;
   std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order

@@ -35,6 +35,7 @@ enum class Technique {
   kPlane,   // thin sheets on the surface of that name (scene::SheetSurface)
   kSkyPlane,
   kDome,
+  kOctaves,  // sky planes with living octaves
 };
 
 // One layer of cloud.
@@ -91,7 +92,7 @@ inline constexpr auto kEnumNames<weather::Genus> = std::array<std::string_view, 
     "altostratus", "cirrus",        "cirrocumulus", "cirrostratus", "fog"};
 template <>
 inline constexpr auto kEnumNames<weather::Technique> =
-    std::array<std::string_view, 5>{"auto", "volume", "plane", "skyplane", "dome"};
+    std::array<std::string_view, 6>{"auto", "volume", "plane", "skyplane", "dome", "octaves"};
 template <>
 inline constexpr auto kEnumNames<weather::PrecipitationKind> =
     std::array<std::string_view, 6>{"none", "drizzle", "rain", "snow", "ice_pellets", "hail"};

@@ -12,6 +12,7 @@
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/gpu/context.h"
+#include "welkin/render/octaves_pass.h"
 
 namespace {
 std::atomic<long> gAllocations{0};
@@ -42,7 +43,7 @@ class LiveSkyTest : public ::testing::Test {
     for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
   }
 
-  // Two flat layers, and a dome, small enough to be quick.
+  // Two flat layers, one with living octaves, and a dome, small enough to be quick.
   static scene::Scene thinScene(double sunElevationDeg = 35.0) {
     scene::Scene s = cloudyScene(sunElevationDeg, {Genus::kStratocumulus, Genus::kCirrus});
     s.technique = scene::Technique::kSkyPlane;
@@ -50,6 +51,14 @@ class LiveSkyTest : public ::testing::Test {
     dome.texels = 32;
     dome.heightM = 3000.0;
     s.sheets.push_back(dome);
+    scene::Sheet living;
+    living.pattern = scene::SheetPattern::kOctaves;
+    living.tier = scene::SheetTier::kEmbossed;
+    living.heightM = 5000.0;
+    living.texels = 64;
+    living.octaves = 4;
+    living.oktas = 3.0;
+    s.sheets.push_back(living);
     s.output.width = 64;
     s.output.height = 36;
     return s;
@@ -134,6 +143,25 @@ TEST_F(LiveSkyTest, DrawsAllocateNothing) {
   // Mesa's own allocations are plain malloc.
   for (int i = 0; i < 3; ++i) sky.draw(view, target, options);
   EXPECT_EQ(gAllocations - before, 0);
+}
+
+TEST_F(LiveSkyTest, ComposingOctavesAllocatesNothing) {
+  for (const auto kernel :
+       {scene::OctaveKernel::kGradient, scene::OctaveKernel::kPallister, scene::OctaveKernel::kCourse}) {
+    scene::Sheet sheet;
+    sheet.pattern = scene::SheetPattern::kOctaves;
+    sheet.living.kernel = kernel;
+    sheet.texels = 64;
+    sheet.octaves = 3;
+    OctavesPass pass;
+    LivingTexture living(sheet, 1);
+    gpu::Texture2D pattern(64, 64, {.format = gpu::Format::kR16F, .filter = gpu::Filter::kMipmap});
+    pass.prepare(living);
+    pass.compose(living, 0.0, pattern);
+    const long before = gAllocations;
+    for (int i = 1; i < 50; ++i) pass.compose(living, 40.0 * i, pattern);
+    EXPECT_EQ(gAllocations - before, 0);
+  }
 }
 
 // Only the clouds, over what an engine has drawn.

@@ -166,6 +166,10 @@ ShaderDefines definesOfLayers(int count) {
   // Sheets in all tiers of light, on either kind of pattern.
   defines.push_back({"WELKIN_TIER", std::to_string(count % 3)});
   defines.push_back({"WELKIN_PATTERN_3D", count % 2 ? "1" : "0"});
+  defines.push_back({"WELKIN_BACKDROP", std::to_string(count % 3)});
+  // Living octaves of each kernel, one and more.
+  defines.push_back({"WELKIN_KERNEL", std::to_string(count % 3)});
+  defines.push_back({"WELKIN_OCTAVES", std::to_string(std::clamp(count * 3, 1, 8))});
   return defines;
 }
 
