@@ -46,7 +46,7 @@ void expectDelivered(const std::string& metar) {
     scene.seed = seed;
     const auto clouds =
         cloudsAt(scene, weather, calibrateClouds(scene, weather, noiseOf(seed)), noiseOf(seed), 0.0);
-    const DeliveredCover cover = measureCover(scene, weather, *clouds);
+    const DeliveredCover cover = measureCover(scene, weather, *clouds, 0.0);
     ASSERT_EQ(cover.layers.size(), layers.size());
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i] += cover.layers[i].deliveredOktas / kSeeds;
     sky += cover.sky.deliveredOktas / kSeeds;
