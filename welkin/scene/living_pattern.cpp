@@ -19,7 +19,6 @@ using namespace welkin::glsl;
 #include "shaders/lib/octaves.glsl"
 
 constexpr int kMaxSide = 32;
-constexpr int kSourceSide = 32;  // of both sources' octaves
 
 // A point's share of the place u cells from it, one axis. Of gradients: of its component along the other axis
 // (even), and of its component along this one (odd).
@@ -76,7 +75,7 @@ LivingPattern::LivingPattern(const Sheet& sheet, std::uint64_t seed) : living_(s
   const double towards = radians(sheet.windFromDeg + 180.0);
   scroll_ = glm::dvec2(std::sin(towards), std::cos(towards)) * (living_.scrollMps / sheet.tileM);
 
-  int cells = gradient ? static_cast<int>(sheet.frequency) : kSourceSide;
+  auto cells = static_cast<int>(cellsOf(sheet));
   double amplitude = sheet.amplitude, intervalS = living_.intervalS;
   for (std::int64_t k = 0; k < sheet.octaves && k < kMaxLivingOctaves; ++k) {
     if (k > 0 && cells > sheet.texels) break;

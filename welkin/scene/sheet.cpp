@@ -157,17 +157,22 @@ Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
   return s;
 }
 
+std::int64_t cellsOf(const Sheet& sheet) {
+  constexpr std::int64_t kSourceCells = 32;  // of both sources
+  const bool own = sheet.pattern != SheetPattern::kOctaves || sheet.living.kernel == OctaveKernel::kGradient;
+  return own ? sheet.frequency : kSourceCells;
+}
+
 Sheet withLivingOctaves(Sheet sheet, const LayerOctaves& octaves) {
   // Fewer cells in a tile, as its texels are fewer as well.
-  constexpr std::int64_t kCells = 16, kSourceCells = 32;
-  const std::int64_t cells = octaves.living.kernel == OctaveKernel::kGradient ? kCells : kSourceCells;
+  constexpr std::int64_t kCells = 16;
+  const double cellM = sheet.tileM / static_cast<double>(sheet.frequency);
+  sheet.frequency = kCells;
   sheet.pattern = SheetPattern::kOctaves;
   sheet.living = octaves.living;
   sheet.texels = octaves.resolution;
   sheet.octaves = octaves.count;
-  sheet.tileM = std::clamp(sheet.tileM * static_cast<double>(cells) / static_cast<double>(sheet.frequency),
-                           100.0, 500000.0);
-  sheet.frequency = cells;
+  sheet.tileM = std::clamp(cellM * static_cast<double>(cellsOf(sheet)), 100.0, 500000.0);
   return sheet;
 }
 

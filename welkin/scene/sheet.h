@@ -76,6 +76,10 @@ Sheet sheetOf(const weather::Layer& layer, SheetSurface surface);
 // The same sheet with living octaves for its pattern, its clouds as large as they were.
 Sheet withLivingOctaves(Sheet sheet, const LayerOctaves& octaves);
 
+// Cells of the pattern's first octave in a tile: the frequency, but for the sources' kernels of living
+// octaves.
+std::int64_t cellsOf(const Sheet& sheet);
+
 // The pattern, in [0, 1]: texels x texels, or for a dome a volume of texels a side, one channel. Tiles.
 // `seed`: one pattern for each. Of living octaves: at the scene's time.
 Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed);

@@ -51,7 +51,7 @@ SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double se
   const glm::vec3 direction = n > 1e-4f ? glm::vec3(level / n, 0.0f) : glm::vec3(0.0f);
   if (sheet.tier == scene::SheetTier::kEmbossed) {
     // A slope by which the sheet gains its typical depth over a third of a cell is wholly sunny.
-    const float texelsPerCell = static_cast<float>(sheet.texels) / static_cast<float>(sheet.frequency);
+    const float texelsPerCell = static_cast<float>(sheet.texels) / static_cast<float>(scene::cellsOf(sheet));
     look.sunStep =
         direction * std::clamp(0.08f * look.steepness / look.typicalDepth * texelsPerCell, 1.0f, 60.0f);
   } else if (sheet.tier == scene::SheetTier::kLit) {

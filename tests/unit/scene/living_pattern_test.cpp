@@ -272,7 +272,7 @@ TEST(LivingPattern, LayersOfTheWeatherLive) {
     EXPECT_EQ(sheet.pattern, SheetPattern::kOctaves);
     EXPECT_EQ(sheet.tier, SheetTier::kEmbossed);
     EXPECT_EQ(sheet.texels, 256);
-    EXPECT_NEAR(sheet.tileM / static_cast<double>(sheet.frequency),
+    EXPECT_NEAR(sheet.tileM / static_cast<double>(cellsOf(sheet)),
                 still.tileM / static_cast<double>(still.frequency), 1e-6);
   }
 }
