@@ -4,7 +4,8 @@
 // beneath all cloud), then WELKIN_EACH_BAND_UP(CALL).
 //
 // With thin layers among them (WELKIN_SHEETS) bands are cut at the sheets' heights, and the order is that of WELKIN_EACH_DOWN(BAND, SHEET),
-// then WELKIN_EACH_UP(BAND, SHEET): BAND(piece, band) and SHEET(sheet, ...) as WELKIN_EACH_SHEET has it. A sheet's place in it is that of its
+// then WELKIN_EACH_UP(BAND, SHEET): BAND(piece, band) and SHEET(hit). WELKIN_EACH_HIT(CALL) has the hits: CALL(hit, whether it is the farther
+// of two, ...) and what WELKIN_EACH_SHEET says of the sheet. A sheet's place in it is that of its
 // height overhead: exact for sky planes; a plane rises off the curved earth and a dome comes down to the ground, but they keep
 // their place.
 // Needs lib/sky_uniforms.glsl before it, and with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl.
@@ -19,6 +20,7 @@ uniform int uSunSamples;          // density samples towards the sun before the 
 uniform float uSunReachM;         // how far they reach
 #ifdef WELKIN_SHEETS
 uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
+uniform int uHits;                // WELKIN_HITS
 uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
 #endif
 
@@ -192,17 +194,22 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
 }
 
 #ifdef WELKIN_SHEETS
-// texel: of the sheet's pattern at the hit; way: of it on the way to the sun.
-void addSheet(int i, int tier, SheetHit hit, vec4 texel, vec3 way, vec3 dir, vec2 phases, float cosSun,
-              inout MarchState state) {
-  float alpha = hit.most - hit.most * exp(-sheetDepth(uSheets[i], texel.x));
-  if (alpha <= 0.0) return;
+// What a ray sees of a sheet: where, which, how much of it, and of its pattern what the light asks for.
+struct SheetSeen {
+  SheetHit hit;
+  int sheet;
+  float alpha;
+  vec4 texel;
+  vec3 way;
+};
+
+// Its luminance as it arrives, air and all.
+vec3 lightOfSheet(SheetSeen seen, vec3 dir, vec2 phases, float cosSun) {
   vec3 inscatter, through;
-  aerial(dir, hit.distanceM, inscatter, through);
-  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(hit.p, uEarthRadiusM)));
-  vec3 light = sheetLuminance(i, tier, hit, texel, way, sun, phases.x, cosSun, dir.z);
-  state.sheets += state.transmittance * alpha * (light * through + inscatter);
-  state.transmittance *= 1.0 - alpha;
+  aerial(dir, seen.hit.distanceM, inscatter, through);
+  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(seen.hit.p, uEarthRadiusM)));
+  vec3 light = sheetLuminance(seen.sheet, WELKIN_SHEET_TIER(seen.sheet), seen.hit, seen.texel, seen.way, sun, phases.x, cosSun, dir.z);
+  return light * through + inscatter;
 }
 #endif
 
@@ -213,34 +220,41 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
 #ifdef WELKIN_SHEETS
   MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0, vec3(0.0));
   vec2 stretch;
-  SheetHit hit;
-  vec4 texel;
-  vec3 way;
+  // All sheets first, as the order of light does not matter: where, and their patterns, one by one, since samplers are; then their
+  // light in a loop, which compilers are not to unroll (uHits): the shader grows little with each sheet.
+  SheetSeen seen[WELKIN_HITS];
+  vec3 sheetLight[WELKIN_HITS];
+#define WELKIN_PATTERN(VECTOR, pattern, i, share, level) \
+  textureLod(pattern, VECTOR(hit.coordinate + share * vec3(uSheetSunStep[i])), level).x
+#define WELKIN_SEE(k, far, i, kind, tier, VECTOR, SAMPLER, pattern)                                                 \
+  {                                                                                                                 \
+    SheetHit hit = meetSheet(i, kind, far, dir, endM, pixelRad);                                                    \
+    vec4 texel = textureGrad(pattern, VECTOR(hit.coordinate), VECTOR(hit.across), VECTOR(hit.along));               \
+    vec3 way = vec3(0.0);                                                                                           \
+    if (tier == 2) {                                                                                                \
+      float level = floor(sheetWayLevel(uSheetRay[i].y * pixelRad, max(hit.distanceM, 1.0)));                       \
+      way = vec3(WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.x, level),                                            \
+                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.y, level),                                            \
+                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.z, level));                                           \
+    }                                                                                                               \
+    seen[k] = SheetSeen(hit, i, hit.most - hit.most * exp(-sheetDepth(uSheets[i], texel.x)), texel, way);           \
+  }
+  WELKIN_EACH_HIT(WELKIN_SEE)
+  for (int k = 0; k < uHits; ++k)
+    if (seen[k].alpha > 0.0) sheetLight[k] = lightOfSheet(seen[k], dir, phases, cosSun);
 #define WELKIN_MARCH(p, band, up)                            \
   stretch = bandStretch(vec2(uPieces[p]), up, dir.z);        \
   stretch.y = min(stretch.y, endM);                          \
   marchBand(band, stretch, dir, pixelRad, phases, cosSun, dither, state);
 #define WELKIN_MARCH_DOWN(p, band) WELKIN_MARCH(p, band, false)
 #define WELKIN_MARCH_UP(p, band) WELKIN_MARCH(p, band, true)
-#define WELKIN_PATTERN(VECTOR, pattern, i, share, level) \
-  textureLod(pattern, VECTOR(hit.coordinate + share * vec3(uSheetSunStep[i])), level).x
-#define WELKIN_MEET(i, kind, tier, VECTOR, pattern, far)                                                            \
-  hit = meetSheet(i, kind, far, dir, endM, pixelRad);                                                               \
-  if (hit.most > 0.0 && state.transmittance > 0.0) {                                                                \
-    texel = textureGrad(pattern, VECTOR(hit.coordinate), VECTOR(hit.across), VECTOR(hit.along));                    \
-    way = vec3(0.0);                                                                                                \
-    if (tier == 2) {                                                                                                \
-      float level = floor(sheetWayLevel(uSheetRay[i].y * pixelRad, hit.distanceM));                                 \
-      way = vec3(WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.x, level),                                            \
-                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.y, level),                                            \
-                 WELKIN_PATTERN(VECTOR, pattern, i, kSheetWay.z, level));                                           \
-    }                                                                                                               \
-    addSheet(i, tier, hit, texel, way, dir, phases, cosSun, state);                                                 \
+#define WELKIN_ADD_SHEET(k)                                                              \
+  if (seen[k].alpha > 0.0) {                                                             \
+    state.sheets += state.transmittance * seen[k].alpha * sheetLight[k];                 \
+    state.transmittance *= 1.0 - seen[k].alpha;                                          \
   }
-#define WELKIN_MEET_DOWN(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, false)
-#define WELKIN_MEET_UP(i, kind, tier, VECTOR, SAMPLER, pattern) WELKIN_MEET(i, kind, tier, VECTOR, pattern, true)
-  WELKIN_EACH_DOWN(WELKIN_MARCH_DOWN, WELKIN_MEET_DOWN)
-  WELKIN_EACH_UP(WELKIN_MARCH_UP, WELKIN_MEET_UP)
+  WELKIN_EACH_DOWN(WELKIN_MARCH_DOWN, WELKIN_ADD_SHEET)
+  WELKIN_EACH_UP(WELKIN_MARCH_UP, WELKIN_ADD_SHEET)
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
                   state.sheets);
 #else

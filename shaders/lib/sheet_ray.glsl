@@ -2,13 +2,14 @@
 // Thin layers of cloud met by rays, for pictures that march through volumes beside them.
 //
 // Which sheets there are is compiled in: WELKIN_SHEETS, their number, and WELKIN_EACH_SHEET(CALL), CALL(sheet, kind of surface, tier,
-// vector of the pattern's coordinates, kind of sampler, sampler) for each, from the ground up.
+// vector of the pattern's coordinates, kind of sampler, sampler) for each, from the ground up; WELKIN_SHEET_TIER(i), the tier of one of
+// them, a constant where all have the same.
 // Needs lib/sky_uniforms.glsl, lib/sheet.glsl, lib/sheet_light.glsl and lib/sheet_surface.glsl before it.
 
 uniform Sheet uSheets[WELKIN_SHEETS];
 uniform vec4 uSheetShape[WELKIN_SHEETS];    // lib/sheet_surface.glsl
 uniform vec4 uSheetRay[WELKIN_SHEETS];      // where the rim begins, m; texels a metre; share of the key light past sheets above; share that it lets through, mean
-uniform vec4 uSheetSky[WELKIN_SHEETS];      // mean luminance of the sky over it, cd/m2
+uniform vec4 uSheetSky[WELKIN_SHEETS];      // mean luminance of the sky over it, cd/m2; w: its tier
 uniform vec4 uSheetSunStep[WELKIN_SHEETS];  // uSunStep of pass/sheet.frag
 
 #define WELKIN_DECLARE_SHEET(i, kind, tier, VECTOR, SAMPLER, pattern) uniform SAMPLER pattern;

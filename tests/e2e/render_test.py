@@ -67,6 +67,18 @@ class Stills(ProgramTest):
         self.assertEqual(info["metadata"]["welkin_time"], r["time"])
         self.assertEqual(info["metadata"]["welkin_metar"], r["metar"])
 
+    def test_sheets_among_volumes(self):
+        (self.folder / "s.toml").write_text(
+            '[[layer]]\ngenus = "cumulus"\n[[layer]]\ngenus = "cirrus"\ntechnique = "skyplane"\n'
+            "[[sheet]]\nheight_m = 700\ntexels = 64\noktas = 2\n")
+        self.succeed("render", "s.toml", "--projection", "fisheye", "--size", "32x32", "--quality", "low", "-o", "a.exr",
+                     "--report", "r.json")
+        r = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual([layer["technique"] for layer in r["layers"]], ["volume", "skyplane"])
+        self.assertEqual(len(r["sheets"]), 1)
+        self.assertAlmostEqual(r["sheets"][0]["delivered_oktas"], 2, delta=0.1)
+        self.assertGreater(r["sky_cover"]["delivered_oktas"], r["layers"][0]["delivered_oktas"] + 1)
+
     def test_projections_have_their_sizes(self):
         for projection, size in (("fisheye", "64x64"), ("equirect", "96x48"), ("cubemap", "96x16")):
             self.succeed("render", *CUMULUS, "--quality", "low", "--size", size, "--projection", projection, "-o", "p.png")

@@ -56,7 +56,7 @@ void SkySheets::set(gpu::Program& program, const scene::SkyState& state,
   for (const auto& band : layout.bands)
     bandSky.push_back(
         shading::lightShareUnder(state, inSky(), 0.5 * static_cast<double>(band.baseM + band.topM)));
-  setUniforms(program, shading::sheetUniforms(layout, onRay_, bandSky));
+  setUniforms(program, shading::sheetUniforms(layout, onRay_, bandSky, state.scene.camera.eyeM));
   for (std::size_t i = 0; i < onRay_.size(); ++i)
     setSheet(program, sheetUniformNames("uSheets[" + std::to_string(i) + "]"), onRay_[i].look);
 }

@@ -22,6 +22,11 @@ std::string callOf(std::span<const SheetOnRay> sheets, std::size_t i) {
          (volume ? ", vec3, sampler3D, " : ", vec2, sampler2D, ") + patternName(i) + ") ";
 }
 
+// By a ray: from above twice, but for a plane.
+int timesMet(const SheetOnRay& sheet, double eyeM) {
+  return eyeM > sheet.look.heightM && sheet.surface != scene::SheetSurface::kPlane ? 2 : 1;
+}
+
 }  // namespace
 
 std::vector<SkyPiece> piecesOf(const LightVolumeLayout& layout, std::span<const SheetOnRay> sheets) {
@@ -45,7 +50,8 @@ std::vector<SkyPiece> piecesOf(const LightVolumeLayout& layout, std::span<const 
 }
 
 ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const SheetOnRay> sheets, double eyeM) {
-  std::string layers, each, shadows, up, down;
+  std::string layers, each, shadows, hits, up, down;
+  int hitCount = 0;
   for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) layers += layerCalls(layout, b);
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     each += "CALL" + callOf(sheets, i);
@@ -63,13 +69,20 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
       continue;
     }
     const auto i = static_cast<std::size_t>(piece.sheet);
-    const std::string call = "SHEET" + callOf(sheets, i);
+    const auto hit = [&](const char* far) {
+      hits += "CALL(" + std::to_string(hitCount) + ", " + far + ", " + callOf(sheets, i).substr(1);
+      return "SHEET(" + std::to_string(hitCount++) + ") ";
+    };
     const bool above = eyeM > sheets[i].look.heightM;
-    if (above) down = call + down;
-    // A plane is met but once.
-    if (!above || sheets[i].surface != scene::SheetSurface::kPlane) up += call;
+    if (above) down = hit("false") + down;
+    if (!above || timesMet(sheets[i], eyeM) == 2) up += hit("true");
   }
+  const bool sameTier = std::ranges::all_of(sheets, [&](const auto& s) { return s.tier == sheets[0].tier; });
   return {{"WELKIN_EACH_LAYER(CALL)", layers},
+          {"WELKIN_SHEET_TIER(i)",
+           sameTier ? std::to_string(static_cast<int>(sheets[0].tier)) : "int(uSheetSky[i].w + 0.5)"},
+          {"WELKIN_HITS", std::to_string(hitCount)},
+          {"WELKIN_EACH_HIT(CALL)", hits},
           {"WELKIN_SHEETS", std::to_string(sheets.size())},
           {"WELKIN_PIECES", std::to_string(pieces.size())},
           {"WELKIN_EACH_SHEET(CALL)", each},
@@ -79,18 +92,21 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
 }
 
 Uniforms sheetUniforms(const LightVolumeLayout& layout, std::span<const SheetOnRay> sheets,
-                       std::span<const glm::vec4> bandSky) {
+                       std::span<const glm::vec4> bandSky, double eyeM) {
   std::vector<glm::vec4> shapes, rays, skies, sunSteps, pieces, bands(field::kMaxLayers, glm::vec4(1.0f));
   for (const SheetOnRay& s : sheets) {
     shapes.push_back(s.shape.shape);
     rays.emplace_back(s.shape.innerM, s.look.texelsPerPixel, s.light.sun, s.sunThrough);
-    skies.emplace_back(s.light.sky, 0.0f);
+    skies.emplace_back(s.light.sky, static_cast<float>(s.tier));
     sunSteps.emplace_back(s.look.sunStep, 0.0f);
   }
   for (const SkyPiece& p : piecesOf(layout, sheets)) pieces.emplace_back(p.baseM, p.topM, 0.0f, 0.0f);
   for (std::size_t b = 0; b < bandSky.size(); ++b) bands[b] = bandSky[b];
-  return {{"uSheetShape", shapes},     {"uSheetRay", rays}, {"uSheetSky", skies},
-          {"uSheetSunStep", sunSteps}, {"uPieces", pieces}, {"uBandSky", bands}};
+  int hits = 0;
+  for (const SheetOnRay& s : sheets) hits += timesMet(s, eyeM);
+  return {{"uHits", hits},      {"uSheetShape", shapes},     {"uSheetRay", rays},
+          {"uSheetSky", skies}, {"uSheetSunStep", sunSteps}, {"uPieces", pieces},
+          {"uBandSky", bands}};
 }
 
 }  // namespace welkin::shading

@@ -46,6 +46,6 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
 // Beside those of the march; not uSheets, for which render/sheet_pass.h has a function. bandSky: of each
 // band, lightShareUnder().
 Uniforms sheetUniforms(const LightVolumeLayout& layout, std::span<const SheetOnRay> sheets,
-                       std::span<const glm::vec4> bandSky);
+                       std::span<const glm::vec4> bandSky, double eyeM);
 
 }  // namespace welkin::shading

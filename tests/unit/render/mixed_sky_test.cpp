@@ -138,6 +138,17 @@ TEST_F(MixedSkyTest, ASheetOfNothingChangesNothing) {
   EXPECT_LT(apart(without, drawn(s)), 2e-3);
 }
 
+// What was drawn before leaves no trace, to the last bit.
+TEST_F(MixedSkyTest, SheetsComeAndGo) {
+  const scene::Scene without = cloudyScene(30.0, {Genus::kStratus});
+  scene::Scene with = without;
+  with.sheets = {islands(4000.0)};
+  const Image<float> first = drawn(without), sheets = drawn(with);
+  EXPECT_NE(first.data, sheets.data);
+  EXPECT_EQ(drawn(without).data, first.data);
+  EXPECT_EQ(drawn(with).data, sheets.data);
+}
+
 // The meshes of the frame loop and the rays of the still are two ways to one picture.
 TEST_F(MixedSkyTest, ASheetAloneIsThatOfTheFrameLoop) {
   for (const double sunElevationDeg : {35.0, 2.0}) {

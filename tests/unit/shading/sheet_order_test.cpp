@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/testing/skies.h"
@@ -139,21 +140,31 @@ TEST(SheetOrder, IsThatOfTheRayFromAnyHeight) {
   sheets[0].surface = SheetSurface::kPlane;
   const auto ways = [&](double eyeM) {
     const ShaderDefines d = sheetDefines(twoBands(), sheets, eyeM);
-    std::string text = defineOf(d, "WELKIN_EACH_DOWN") + "| " + defineOf(d, "WELKIN_EACH_UP"), brief;
-    // Without what is said of a sheet beside its number.
-    bool in = false;
-    for (const char c : text) {
-      if (c == ',') in = true;
-      if (c == ')') in = false;
-      if (!in) brief += c;
+    const std::string text = defineOf(d, "WELKIN_EACH_DOWN") + "| " + defineOf(d, "WELKIN_EACH_UP");
+    const std::string hits = defineOf(d, "WELKIN_EACH_HIT");
+    std::string brief;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+      if (word.starts_with("SHEET(")) {
+        // Which sheet the hit is of, and whether it is the farther.
+        const std::string call = "CALL(" + word.substr(6, word.size() - 7) + ", ";
+        const std::size_t at = hits.find(call);
+        EXPECT_NE(at, std::string::npos);
+        const std::string rest = hits.substr(at + call.size());
+        brief += std::string(rest.starts_with("true") ? "far" : "near") + rest[rest.find(", ") + 2] + " ";
+      } else if (word.starts_with("BAND(")) {
+        brief += "piece" + word.substr(5, word.size() - 6) + " ";
+      } else if (word == "|") {
+        brief += "| ";
+      }
     }
     return brief;
   };
-  EXPECT_EQ(ways(2.0), "| BAND(0) SHEET(0) BAND(2) SHEET(1) ");
-  EXPECT_EQ(ways(1500.0), "BAND(0) | BAND(0) SHEET(0) BAND(2) SHEET(1) ");
+  EXPECT_EQ(ways(2.0), "| piece0 far0 piece2 far1 ");
+  EXPECT_EQ(ways(1500.0), "piece0 | piece0 far0 piece2 far1 ");
   // The plane beneath is not met again on the way up, the sky plane is.
-  EXPECT_EQ(ways(5000.0), "SHEET(0) BAND(0) | BAND(0) BAND(2) SHEET(1) ");
-  EXPECT_EQ(ways(12000.0), "SHEET(1) BAND(2) SHEET(0) BAND(0) | BAND(0) BAND(2) SHEET(1) ");
+  EXPECT_EQ(ways(5000.0), "near0 piece0 | piece0 piece2 far1 ");
+  EXPECT_EQ(ways(12000.0), "near1 piece2 near0 piece0 | piece0 piece2 far1 ");
 }
 
 TEST(SheetOrder, LayersThatAreSheetsAreInNoBand) {
