@@ -99,6 +99,17 @@ std::vector<Case> cases() {
   all.push_back({"dense", dense, Grid::tile({36, 30, 20})});
   dense.frequency = {40, 40, 40};
   all.push_back({"tiny", dense, Grid::tile({36, 30, 20})});
+  // Octaves whose tiles are cut into cubes, the second added to the first.
+  NoiseParams cubes{.kind = Kind::kCellular, .frequency = {4, 4, 4}, .octaves = 2};
+  all.push_back({"cubes", cubes, Grid::tile({36, 34, 35})});
+  // Lattice points less and more than a sample apart, near the step up to which a vector holds all of them.
+  for (const double x : {46.0, 59.0, 65.0})
+    for (const bool evolving : {false, true}) {
+      NoiseParams fine{.frequency = {x, 20, 9}, .octaves = 2};
+      if (evolving) fine.time = 0.7;
+      all.push_back(
+          {"fine " + std::to_string(x) + (evolving ? " evolving" : ""), fine, Grid::tile({70, 29, 13})});
+    }
   return all;
 }
 
