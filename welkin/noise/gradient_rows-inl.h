@@ -48,9 +48,9 @@ struct Plane {
 // Vectors of 64 bytes come with 32 registers.
 inline constexpr bool kManyRegisters = hn::MaxLanes(Floats()) >= 16;
 
-// In a register from here on: compilers would rather load what is used twice twice.
+// In a register from here on: GCC would rather load what is used twice twice.
 HWY_INLINE void keep(VF& v) {
-#if HWY_ARCH_X86 && (HWY_COMPILER_GCC || HWY_COMPILER_CLANG)
+#if HWY_ARCH_X86 && defined(__GNUC__) && !defined(__clang__)
   asm("" : "+v"(v.raw));
 #else
   (void)v;

@@ -206,6 +206,25 @@ TEST(Fill, GivesABoxWhatTheWholeHasThere) {
   }
 }
 
+// Buffers larger than the caches are written past them, where rows begin at whole vectors.
+TEST(Fill, IsTheSameInBuffersLargerThanCaches) {
+  for (const Kind kind : {Kind::kPerlin, Kind::kCellular})
+    for (const int width : {304, 301}) {
+      const Noise noise({.kind = kind, .tile = false, .frequency = {0.04, 0.05, 0.06}, .octaves = 2});
+      const Grid grid{{width, 256, 16}, glm::dvec3(1.0)};
+      const std::size_t slice = static_cast<std::size_t>(width) * 256;
+      std::vector<float> large(slice * 16 + 1);
+      for (const std::size_t shift : {0, 1}) {  // by a float
+        noise.fill(grid, std::span(large).subspan(shift, slice * 16));
+        for (int z = 0; z < 16; ++z) {
+          const auto small = filled<float>(noise, grid, {{0, 0, z}, {width, 256, 1}});
+          EXPECT_EQ(std::memcmp(small.data(), &large[shift + slice * z], slice * sizeof(float)), 0)
+              << width << " " << z;
+        }
+      }
+    }
+}
+
 // Integers and halves are what the floats round to.
 TEST(Fill, RoundsToEveryFormat) {
   for (const Normalisation n :
