@@ -328,10 +328,11 @@ class GradientRows {
     }
   }
 
-  // Whether all lattice points beside a vector of samples are in one vector of points.
+  // Whether all lattice points beside a vector of samples are in one vector of points, for any rounding of
+  // places that lie on lattice points.
   static bool gathers(double step) {
     const auto lanes = static_cast<int>(hn::Lanes(Floats()));
-    return (lanes - 1) * step <= lanes - 2;
+    return (lanes - 1) * step < lanes - 2 - 1e-6;
   }
 
   // By sample, the hashes' factors of the points below and above; distances between lines' and planes' own.

@@ -102,6 +102,8 @@ std::vector<Case> cases() {
   // Octaves whose tiles are cut into cubes, the second added to the first.
   NoiseParams cubes{.kind = Kind::kCellular, .frequency = {4, 4, 4}, .octaves = 2};
   all.push_back({"cubes", cubes, Grid::tile({36, 34, 35})});
+  // Vectors of 16 samples that begin and end on lattice points.
+  all.push_back({"ends on points", {.frequency = {140, 3, 2}, .octaves = 1}, Grid::tile({150, 29, 13})});
   // Lattice points less and more than a sample apart, near the step up to which a vector holds all of them.
   for (const double x : {46.0, 59.0, 65.0})
     for (const bool evolving : {false, true}) {
