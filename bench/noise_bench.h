@@ -15,11 +15,11 @@
 namespace welkin::bench {
 
 struct NoiseTime {
-  std::string name;  // of the workload; "write" for 64 MiB of floats written without computing any
+  std::string name;  // of the workload; "write" and "write past caches": 64 MiB of floats, none computed
   std::string set;   // instruction set; of writing: the C library's own choice, ""
   int threads = 1;
   int size = 0;              // samples across
-  double nsPerSample = 0.0;  // wall clock, median
+  double nsPerSample = 0.0;  // median; of one thread processor time, of two wall clock
 };
 
 // Measures each workload on each instruction set of this processor with one thread; on the best also with two

@@ -104,7 +104,8 @@ io::TexelFormat formatFor(const OutputArgs& args, io::TexelFileKind kind, io::Te
   std::string expected = "another --format or kind of file";
   if (nearest) expected = "--format " + io::nameOf(*nearest);
   if (kind == io::TexelFileKind::kVdb && !shape.volume) expected = "a size of three numbers";
-  if (kind != io::TexelFileKind::kVdb && shape.volume) expected = ".dds, .raw or .vdb";
+  const bool pictures = kind == io::TexelFileKind::kPng || kind == io::TexelFileKind::kExr;
+  if (pictures && shape.volume) expected = io::countOf(natural) == 1 ? ".dds, .raw or .vdb" : ".dds or .raw";
   throw UsageError(*args.out + " cannot hold a " + (shape.volume ? "volume of " : "picture of ") +
                    io::nameOf(asked) + "; expected " + expected);
 }

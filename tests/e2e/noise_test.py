@@ -86,6 +86,11 @@ class Noise(ProgramTest):
             self.succeed("noise", *args, "b.dds", "--threads", "3")
             self.assertEqual((self.folder / "a.dds").read_bytes(), (self.folder / "b.dds").read_bytes(), kind)
 
+    def test_large_volumes_are_written_as_they_are_made(self):
+        r = self.report("-o", "x.dds", "--size", "512x512x512", "--octaves", "1")
+        self.assertEqual((self.folder / "x.dds").stat().st_size, 128 + 512 ** 3)
+        self.assertLess(r["peak_rss_mib"], 100)  # of 128 MiB
+
     def test_preview_tiles_and_shows_slices(self):
         self.succeed("noise", "--size", "20x10", "-o", "x.png", "--preview", "p.png", "--tile", "3x2")
         width, height, _, one = read_png(self.folder / "x.png")
@@ -146,6 +151,10 @@ class BadNoise(ProgramTest):
         self.refuse('no texel format "zz8"', *size, "--format", "zz8")
         self.refuse("cannot hold a picture of r32f", *size, "--format", "r32f")
         self.refuse("x.png cannot hold a volume of l8; expected .dds, .raw or .vdb", "--size", "8x8x8")
+        curl = ("--kind", "curl", "--size", "8x8x8")
+        self.refuse("x.png cannot hold a volume of rgb8; expected .dds or .raw", *curl)
+        self.refuse("x.dds cannot hold a volume of rgb8; expected --format rgba8", *curl, "--format", "rgb8", out="x.dds")
+        self.refuse("x.vdb cannot hold a volume of rgb32f; expected another --format or kind of file", *curl, out="x.vdb")
         self.refuse("expected a size of three numbers", *size, out="x.vdb")
         self.refuse("a8 has 1 channel a texel; expected rgba8 or the like", *size, "--kind", "perlin-worley", "--format", "a8")
         self.refuse("--mipmaps, --edges and --header are for .dds", *size, "--mipmaps", "box")

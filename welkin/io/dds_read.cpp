@@ -126,7 +126,7 @@ struct Parsed {
 
 int sizeOf(const InputFile& file, std::uint32_t n, const char* what, std::uint64_t byte) {
   if (n < 1 || n > INT_MAX)
-    file.fail(std::string(what) + " is " + std::to_string(n) + "; expected at least 1", byte);
+    file.fail(std::string(what) + " is " + std::to_string(n) + "; expected 1 to 2147483647", byte);
   return static_cast<int>(n);
 }
 

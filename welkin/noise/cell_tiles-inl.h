@@ -6,6 +6,8 @@
 // distance to the tile's box is not above the smallest of all points' greatest distances. Some four are left
 // of 27 or more, and the samples look at these alone. The result is exact.
 //
+// Where samples are 3 to 10 to a cell, tiles are 8 in each direction and cut again (cell_cubes-inl.h).
+//
 // Tiles lie at multiples of their size in the whole grid, and positions are relative to the cell of their
 // first sample, so that a sample's value does not depend on the box that is filled.
 #if defined(WELKIN_NOISE_CELL_TILES_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -22,6 +24,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "welkin/noise/cell_cubes-inl.h"
 #include "welkin/noise/fill.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,12 +44,13 @@ class CellTiles {
   CellTiles(const CellTables& tables, const Block& block, Scratch& scratch) : tables_(tables), block_(block) {
     makePoints(scratch);
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
-    for (auto& q : near_) q = scratch.take<float>(most);
+    for (auto& q : near_) q = scratch.take<float>(most + 2 * kLanes);
     away_ = scratch.take<float>(most);
     alongX_ = scratch.take<float>(most * kTileX);
     for (float** rows : {&alongY_, &alongZ_, &beside_})
       *rows = scratch.take<float>((most + kLanes) * kTileMost);
     runs_ = scratch.take<Run>(most / std::size_t{kLanes} + 1);
+    if (tables.cubes) cubes_ = CellCubes(tables, block, most, scratch);
   }
 
   // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
@@ -57,6 +61,7 @@ class CellTiles {
     weight_ = weight;
     bias_ = bias;
     add_ = add;
+    if (tables_.cubes) return fillCubes();
     if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
     for (int z = 0; z < block_.slices; z += tz)
@@ -71,6 +76,21 @@ class CellTiles {
   }
 
  private:
+  void fillCubes() {
+    const CellCubes::Output to{out_, outStride_, block_.rows, weight_, bias_, add_};
+    const auto tile = [&](int x, int y, int z) HWY_ATTR {
+      return cubes_.fillTile(x, y, z, {{near_[0], near_[1], near_[2]}, nearCount_}, to);
+    };
+    for (int z = 0; z < block_.slices; z += kTileMost)
+      for (int y = 0; y < block_.rows; y += kTileMost)
+        for (int x = 0; x < block_.width; x += kTileX) {
+          const float safe = findNear(x, y, z, false);
+          if (tile(x, y, z) <= safe) continue;
+          collect(kCellReach, false);
+          tile(x, y, z);
+        }
+  }
+
   const CellPlaces& axis(int a) const { return tables_.axis[a]; }
   int first(int a) const { return a == 0 ? block_.x : a == 1 ? block_.y : block_.z; }
   int samples(int a) const { return a == 0 ? block_.width : a == 1 ? block_.rows : block_.slices; }
@@ -228,9 +248,9 @@ class CellTiles {
       if (solid) keep(2, hn::Set(d, static_cast<float>(run.cell[2])));
       nearCount_ += std::popcount(static_cast<unsigned>(bits[0]));
     }
-    // Far points, so that loops over these may take two at a time.
-    for (; nearCount_ % 2 != 0; ++nearCount_)
-      for (auto& q : near_) q[nearCount_] = kFar;
+    // Far points, so that loops over these may take two or a vector at a time.
+    for (auto& q : near_) hn::StoreU(far, d, q + nearCount_);
+    nearCount_ += nearCount_ % 2;
     return limit;
   }
 
@@ -532,6 +552,7 @@ class CellTiles {
 
   const CellTables& tables_;
   const Block block_;
+  CellCubes cubes_;
   int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
   float* points_[3] = {};                             // within their cells
   Extent box_[3];

@@ -63,8 +63,20 @@ HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, 
   }
 }
 
+// One sum of gradient noise as floats.
+void fillFloats(const FillJob& job, const Block& b, Scratch& scratch) {
+  GradientRows rows(job.gradients, scratch, b.x, b.width);
+  for (int z = b.z; z < b.z + b.slices; ++z) {
+    rows.beginSlice(z);
+    for (int y = b.y; y < b.y + b.rows;)
+      y += rows.fillChunkInto(y, b.y + b.rows - y,
+                              [&](int) HWY_ATTR { return FloatSink(job, b.x, y, z, b.width); });
+  }
+}
+
 // Sums of gradient noise, each a channel.
 void fillSums(const FillJob& job, const Block& b, Scratch& scratch) {
+  if (job.format == Format::kFloat && job.channels == 1) return fillFloats(job, b, scratch);
   float* channel[4];
   for (int c = 0; c < job.channels; ++c) channel[c] = takeChunk(scratch);
   forChunks(job, b, scratch, channel, [&](int z, int y, int rows) HWY_ATTR {

@@ -5,8 +5,9 @@
 // products of one factor for each axis, because the noise is
 //   sum over corners of  w(x) w(y) w(z) (g_x d_x + g_y d_y + g_z d_z)
 // with w the fade's weight of a corner on an axis and d the distance to it. For each row of lattice points
-// the factors of x and z are expanded over the samples once, into
-//   A[x] = sum_z,corner w w (g_x d_x + g_z d_z),   B[x] = sum_z,corner w w g_y
+// the factors of z are summed over both slices of lattice points once, and these sums are expanded over the
+// samples, into
+//   A[x] = sum_corner w(x) (sum_z w(z) g_z d_z + d_x sum_z w(z) g_x),   B[x] = sum_corner w(x) sum_z w(z) g_y
 // and every row of samples between two rows of lattice points costs four multiplications a sample:
 //   w0 A0 + (w0 d0) B0 + w1 A1 + (w1 d1) B1.
 // A derivative along an axis puts the derivatives of w and of w d in their places.
@@ -68,9 +69,14 @@ struct Place {
   std::uint32_t lowIndex, highIndex;
 };
 
-// The same of a row, by arrays over x; the hashes are odd.
+// The same of a row, by arrays over x; the hashes are odd. Where samples are less than a cell apart, the
+// hashes are those of the points one after the other, and each sample has the number of the one below it;
+// where they are more than half a cell apart, each sample has its own (also).
 struct RowPlaces {
+  double step;  // cells
   const std::uint32_t *lowHash, *highHash;
+  const std::uint32_t* pointHash;
+  const std::int32_t* cell;
   const float *lowWeight, *lowReach, *highWeight, *highReach;
 };
 
@@ -120,6 +126,7 @@ struct GradientTables {
   RowPlace* rows = nullptr;      // [row * terms + term]
   ChunkLines* chunks = nullptr;  // [chunk * terms + term]
   int lead = 0;                  // rows of the first chunk before the box's first
+  bool published = false;        // some lattice is
   float bias = 0.0f;             // added to every sum
   Fractal fractal = Fractal::kFbm;
 };
@@ -148,6 +155,8 @@ struct CellTables {
   const CellLattice* lattice;
   float weight;
   CellPlaces axis[3];
+  bool cubes;   // tiles of 8 x 8 x 8 samples, cut into cubes: for the nearest point, in cells of 3 to 10
+                // samples
   bool dense;   // samples at least an eighth of a cell apart along x
   int tile[3];  // samples of a tile: kTileX and powers of two up to kTileMost
 };

@@ -116,12 +116,17 @@ class Tables {
     out.lattice = &term.lattice;
     out.weight = static_cast<float>(term.weight * scale);
     out.dense = term.lattice.axis(0).frequency() * job_.grid.spacing.x > 0.126;
+    double most = 0.0;
+    for (int a = 0; a < term.lattice.axes(); ++a)
+      most = std::max(most, term.lattice.axis(a).frequency() * job_.grid.spacing[a]);
+    out.cubes = term.lattice.axes() == 3 && most > kTileStep && most < kCubeStep &&
+                (job_.params->kind == Kind::kPerlinWorley || job_.params->feature == Feature::kF1);
     for (int a = 0; a < 3; ++a) {
-      out.tile[a] = a == 0 ? kTileX : 1;
+      out.tile[a] = a == 0 || out.cubes ? kTileX : 1;
       if (a >= term.lattice.axes()) continue;
       const Axis& axis = term.lattice.axis(a);
       const double step = axis.frequency() * job_.grid.spacing[a];
-      if (a > 0)
+      if (a > 0 && !out.cubes)
         while (out.tile[a] < kTileMost && 2 * out.tile[a] * step <= kTileCells) out.tile[a] *= 2;
       const int first = job_.box.first[a] - job_.lead[a], n = job_.tiled[a];
       auto* cell = memory_.take<std::int32_t>(static_cast<std::size_t>(n));
@@ -159,6 +164,8 @@ class Tables {
   }
 
  private:
+  // Cells between samples, from which and up to which tiles are cut into cubes: measured.
+  static constexpr double kTileStep = 0.1, kCubeStep = 0.3;
   static constexpr double kTileCells = 0.5;  // of a cell's edge that a tile spans in y and z
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
@@ -185,16 +192,27 @@ class Tables {
     const auto yScale = static_cast<float>(folded ? term.weight * scale * unit : unit);
 
     const Line x = lineOf(lattice.axis(0), 0, term.derivative == 0);
-    std::uint32_t* hash[2] = {x.low, x.high};
-    if (!lattice.published())
-      for (std::uint32_t*& h : hash) {
-        auto* hashed = memory_.take<std::uint32_t>(static_cast<std::size_t>(x.count));
-        makeHashes(lattice.axis(0).key(), h, x.count, hashed);
-        for (int i = 0; i < x.count; ++i) hashed[i] |= 1u;
-        h = hashed;
-      }
-    out.x = {hash[0],           hash[1], x.corner.lowWeight, x.corner.lowReach, x.corner.highWeight,
+    const double step = lattice.axis(0).frequency() * job_.grid.spacing.x;
+    out.x = {step,
+             nullptr,
+             nullptr,
+             nullptr,
+             nullptr,
+             x.corner.lowWeight,
+             x.corner.lowReach,
+             x.corner.highWeight,
              x.corner.highReach};
+    if (lattice.published()) {
+      g.published = true;
+      out.x.lowHash = x.low;
+      out.x.highHash = x.high;
+    } else {
+      if (step < 1.0 && lattice.axes() > 2) addPoints(lattice.axis(0), x, out.x);
+      if (step > 0.5 || out.x.pointHash == nullptr) {
+        out.x.lowHash = oddHashes(lattice.axis(0), x.low, x.count);
+        out.x.highHash = oddHashes(lattice.axis(0), x.high, x.count);
+      }
+    }
 
     addRows(g, t, lineOf(lattice.axis(1), 1, term.derivative == 1), yScale);
     out.z = nullptr;
@@ -239,6 +257,31 @@ class Tables {
     line.inside[i] = span.inside;
     line.low[i] = span.low;
     line.high[i] = span.high;
+  }
+
+  const std::uint32_t* oddHashes(const Axis& axis, const std::uint32_t* index, int count) {
+    auto* hashed = memory_.take<std::uint32_t>(static_cast<std::size_t>(padded(count)) + kPad);
+    makeHashes(axis.key(), index, count, hashed);
+    for (int i = 0; i < count; ++i) hashed[i] |= 1u;
+    return hashed;
+  }
+
+  // The points of a row one after the other, where no sample lies more than a cell after the one before, or
+  // before it by an error of rounding.
+  void addPoints(const Axis& axis, const Line& x, RowPlaces& out) {
+    auto* cell = memory_.take<std::int32_t>(static_cast<std::size_t>(x.count));
+    cell[0] = 0;
+    for (int i = 1; i < x.count; ++i) {
+      const bool next = x.low[i] != x.low[i - 1];
+      if (next && x.low[i] != x.high[i - 1]) return;
+      cell[i] = cell[i - 1] + (next ? 1 : 0);
+    }
+    const int points = cell[x.count - 1] + 2;
+    auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(padded(points)));
+    index[0] = x.low[0];
+    for (int i = 1; i < points; ++i) index[i] = index[i - 1] + 1 == axis.period() ? 0 : index[i - 1] + 1;
+    out.cell = cell;
+    out.pointHash = oddHashes(axis, index, points);
   }
 
   Line lineOf(const Axis& axis, int a, bool derivative) {

@@ -37,8 +37,28 @@ HWY_INLINE VU mixedWords(VU h) {
   return hn::Xor(h, hn::ShiftRight<16>(h));
 }
 
+// One corner of the axes beside x and y.
+struct Plane {
+  std::uint32_t hash;   // of those axes
+  std::uint32_t index;  // on the third
+  float weight;         // product of the axes' weights
+  float reach[2];       // the same with an axis' reach in its weight's place, third and fourth
+};
+
+// Vectors of 64 bytes come with 32 registers.
+inline constexpr bool kManyRegisters = hn::MaxLanes(Floats()) >= 16;
+
+// In a register from here on: GCC would rather load what is used twice twice.
+HWY_INLINE void keep(VF& v) {
+#if HWY_ARCH_X86 && defined(__GNUC__) && !defined(__clang__)
+  asm("" : "+v"(v.raw));
+#else
+  (void)v;
+#endif
+}
+
 // Components of gradients by look-up of bytes. With three and four axes the upper byte of +-2 or 0
-// (GradientBytes::kScale undoes the 2), with two axes the upper two bytes.
+// (gradientBytesScale() undoes the 2), with two axes the upper two bytes.
 template <int kAxes>
 struct Gradients {
   HWY_INLINE Gradients() {
@@ -64,6 +84,105 @@ struct Gradients {
   hn::Vec<Bytes> table[kAxes];
 };
 
+// What a lattice point gives to its line: the parts of A that do not and that do grow with the distance in x,
+// and B. Sums over the planes.
+struct PointValue {
+  VF level, slope, b;
+};
+
+// These of a line's points. Components of gradients of three and four axes are 0 or +-2, so that their
+// products with weights are exact, and it makes no difference whether these are looked up or multiplied.
+template <int kAxes>
+class Points {
+ public:
+  static constexpr int kPlanes = 1 << (kAxes - 2);
+
+  explicit HWY_INLINE Points(const Plane* planes) {
+    const Floats d;
+    for (int p = 0; p < kPlanes; ++p)
+      if constexpr (kTables)
+        table_[p] =
+            weighted(planes[p], gradients_.where(hn::ShiftLeft<kGradientShift>(hn::Iota(Words(), 0))));
+      else if constexpr (kAxes > 2) {
+        weight_[p] = hn::Set(d, planes[p].weight);
+        for (int i = 0; i < kAxes - 2; ++i) reach_[p][i] = hn::Set(d, planes[p].reach[i]);
+      }
+  }
+
+  // Of the points with these hashes in each plane.
+  template <class HashOf>
+  HWY_INLINE PointValue operator()(const HashOf& hashOf) const {
+    PointValue sum = one(0, hashOf(0));
+    for (int p = 1; p < kPlanes; ++p) {
+      const VU hash = hashOf(p);
+      if constexpr (kTables || kAxes == 4) {
+        const PointValue v = one(p, hash);
+        sum = {hn::Add(sum.level, v.level), hn::Add(sum.slope, v.slope), hn::Add(sum.b, v.b)};
+      } else {
+        const VU at = gradients_.where(hash);
+        sum.level = hn::MulAdd(gradients_.component(2, at), reach_[p][0], sum.level);
+        sum.slope = hn::MulAdd(gradients_.component(0, at), weight_[p], sum.slope);
+        sum.b = hn::MulAdd(gradients_.component(1, at), weight_[p], sum.b);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  // Vectors that hold a value for every gradient, looked up by a permutation of lanes.
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+  static constexpr bool kTables = hn::MaxLanes(Floats()) >= (kAxes == 2 ? 8 : 16);
+#else
+  static constexpr bool kTables = false;
+#endif
+
+  HWY_INLINE PointValue one(int p, VU hash) const {
+    if constexpr (kTables) {
+      const PointValue& table = table_[p];
+      // The processor looks at the lowest bits of an index alone.
+      const VU index = hn::ShiftRight<kGradientShift>(hash);
+      const auto look = [&](VF from) HWY_ATTR { return lookedUp(from, index); };
+      return {kAxes == 2 ? hn::Zero(Floats()) : look(table.level), look(table.slope), look(table.b)};
+    } else if constexpr (kAxes == 2) {
+      const VU at = gradients_.where(hash);
+      return {hn::Zero(Floats()), gradients_.component(0, at), gradients_.component(1, at)};
+    } else {
+      const VU at = gradients_.where(hash);
+      return byWeights(at, weight_[p], reach_[p]);
+    }
+  }
+
+  static HWY_INLINE VF lookedUp(VF from, VU index) {
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+    using Indices = decltype(hn::IndicesFromVec(Floats(), index));
+    return hn::TableLookupLanes(from, Indices{index.raw});
+#else
+    return hn::TableLookupLanes(from, hn::IndicesFromVec(Floats(), index));
+#endif
+  }
+
+  HWY_INLINE PointValue weighted(const Plane& plane, VU at) const {
+    const Floats d;
+    if constexpr (kAxes == 2) {
+      return {hn::Zero(d), gradients_.component(0, at), gradients_.component(1, at)};
+    } else {
+      const VF reach[2] = {hn::Set(d, plane.reach[0]), hn::Set(d, plane.reach[1])};
+      return byWeights(at, hn::Set(d, plane.weight), reach);
+    }
+  }
+
+  HWY_INLINE PointValue byWeights(VU at, VF weight, const VF* reach) const {
+    VF level = hn::Mul(gradients_.component(2, at), reach[0]);
+    if constexpr (kAxes == 4) level = hn::MulAdd(gradients_.component(3, at), reach[1], level);
+    return {level, hn::Mul(gradients_.component(0, at), weight),
+            hn::Mul(gradients_.component(1, at), weight)};
+  }
+
+  const Gradients<kAxes> gradients_;
+  PointValue table_[kPlanes];
+  VF weight_[kPlanes], reach_[kPlanes][2];
+};
+
 // A strip of the box, chunk after chunk of rows.
 class GradientRows {
  public:
@@ -72,12 +191,9 @@ class GradientRows {
     const auto terms = static_cast<std::size_t>(tables.terms);
     lines_ = scratch.take<float>(terms * kLines * kLineStride);
     planes_ = scratch.take<Plane>(kMaxPlanes * terms);
-    factors_ = scratch.take<float*>(terms);
-    points_ = scratch.take<std::uint32_t>(std::size_t{2} * kLines * kMaxPlanes * kStrip);
-    for (std::size_t t = 0; t < terms; ++t) {
-      const int axes = tables.term[t].lattice->axes();
-      factors_[t] = scratch.take<float>((std::size_t{1} << (axes - 2)) * 2 * axes * kStrip);
-    }
+    points_ = scratch.take<float>(std::size_t{2} * kPointValues * kPointStride);
+    if (tables.published)
+      published_ = scratch.take<std::uint32_t>(std::size_t{2} * kLines * kMaxPlanes * kStrip);
   }
 
   void beginSlice(int z) {
@@ -85,11 +201,48 @@ class GradientRows {
     fresh_ = true;
   }
 
-  // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. Row r
-  // of sum s goes to out[s] + r * kStrip. Chunks of a slice must follow one another.
-  int fillChunk(int y, int rows, float* const* out) {
+  // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. The
+  // samples from i on of row r of sum s go to sinkOf(s)(r, i, vector); the last ones may be past the width.
+  // Chunks of a slice must follow one another.
+  template <class SinkOf>
+  HWY_INLINE int fillChunkInto(int y, int rows, const SinkOf& sinkOf) {
+    rows = expandChunk(y, rows);
+    for (int s = 0; s < tables_.sums; ++s) {
+      const int first = tables_.first[s], terms = tables_.first[s + 1] - first;
+      const RowPlace* places = tables_.rows + static_cast<std::ptrdiff_t>(y) * tables_.terms + first;
+      const auto sink = sinkOf(s);
+      switch (tables_.fractal) {
+        case Fractal::kFbm:
+          sum<Fractal::kFbm>(first, terms, places, rows, sink);
+          break;
+        case Fractal::kBillow:
+          sum<Fractal::kBillow>(first, terms, places, rows, sink);
+          break;
+        case Fractal::kRidged:
+          sum<Fractal::kRidged>(first, terms, places, rows, sink);
+          break;
+      }
+    }
+    return rows;
+  }
+
+  // Row r of sum s goes to out[s] + r * kStrip.
+  HWY_NOINLINE int fillChunk(int y, int rows, float* const* out) {
+    return fillChunkInto(y, rows, [out](int s) HWY_ATTR {
+      float* HWY_RESTRICT to = out[s];
+      return [to](int row, int i, VF v)
+                 HWY_ATTR { hn::Store(v, Floats(), to + static_cast<std::ptrdiff_t>(row) * kStrip + i); };
+    });
+  }
+
+ private:
+  static constexpr std::size_t kMaxPlanes = 4;
+  // A strip has as many points as samples and two, and vectors may reach over the last.
+  static constexpr int kPointValues = 3, kPointStride = kStrip + kPad;
+
+  // Makes the lines of the chunk that row y is in; returns how many rows, at most `rows`, follow in it.
+  int expandChunk(int y, int rows) {
     const int chunk = (y + tables_.lead) / kChunk;
-    rows = HWY_MIN(rows, (chunk + 1) * kChunk - tables_.lead - y);
     const ChunkLines* lines = tables_.chunks + static_cast<std::ptrdiff_t>(chunk) * tables_.terms;
     for (int t = 0; t < tables_.terms; ++t) {
       const std::uint32_t left = fresh_ ? 0 : lines[t].left;
@@ -97,61 +250,24 @@ class GradientRows {
         expand(t, lines[t].line + left, lines[t].hash + left, static_cast<int>(lines[t].count - left));
     }
     fresh_ = false;
-    for (int s = 0; s < tables_.sums; ++s) {
-      const int first = tables_.first[s], terms = tables_.first[s + 1] - first;
-      const RowPlace* places = tables_.rows + static_cast<std::ptrdiff_t>(y) * tables_.terms + first;
-      switch (tables_.fractal) {
-        case Fractal::kFbm:
-          sum<Fractal::kFbm>(first, terms, places, rows, out[s]);
-          break;
-        case Fractal::kBillow:
-          sum<Fractal::kBillow>(first, terms, places, rows, out[s]);
-          break;
-        case Fractal::kRidged:
-          sum<Fractal::kRidged>(first, terms, places, rows, out[s]);
-          break;
-      }
-    }
-    return rows;
+    return HWY_MIN(rows, (chunk + 1) * kChunk - tables_.lead - y);
   }
 
- private:
-  static constexpr std::size_t kMaxPlanes = 4;
-
-  // One corner of the axes beside x and y.
-  struct Plane {
-    std::uint32_t hash;   // of those axes
-    std::uint32_t index;  // on the third
-  };
-
-  // The products of the factors of x and of the outer axes: for each plane and component of the gradient
-  // those of the lower corner in x, then of the upper one.
   void makePlanes(int t, int z) {
     const TermTables& term = tables_.term[t];
     const Place outer[2] = {term.z != nullptr ? term.z[z] : term.time, term.time};
     const int axes = term.lattice->axes();
-    const Floats d;
-    float* next = factors_[t];
     for (int p = 0; p < 1 << (axes - 2); ++p) {
       Plane& plane = planes_[kMaxPlanes * t + p];
-      plane = {0, 0};
-      float scale[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+      plane = {0, 0, 1.0f, {1.0f, 1.0f}};
       for (int e = 2; e < axes; ++e) {
         const bool high = (p >> (e - 2) & 1) != 0;
         const Corner& corner = high ? outer[e - 2].high : outer[e - 2].low;
         const std::uint32_t index = high ? outer[e - 2].highIndex : outer[e - 2].lowIndex;
         if (e == 2) plane.index = index;
         plane.hash += term.lattice->axis(e).hash(index);
-        for (int c = 0; c < axes; ++c) scale[c] *= c == e ? corner.reach : corner.weight;
-      }
-      for (int c = 0; c < axes; ++c, next += std::ptrdiff_t{2} * kStrip) {
-        const auto by = hn::Set(d, scale[c]);
-        const float* low = (c == 0 ? term.x.lowReach : term.x.lowWeight) + x_;
-        const float* high = (c == 0 ? term.x.highReach : term.x.highWeight) + x_;
-        for (int i = 0; i < width_; i += static_cast<int>(hn::Lanes(d))) {
-          hn::Store(hn::Mul(by, hn::LoadU(d, low + i)), d, next + i);
-          hn::Store(hn::Mul(by, hn::LoadU(d, high + i)), d, next + kStrip + i);
-        }
+        plane.weight *= corner.weight;
+        for (int i = 0; i < 2; ++i) plane.reach[i] *= i + 2 == e ? corner.reach : corner.weight;
       }
     }
   }
@@ -172,82 +288,154 @@ class GradientRows {
     const Words du;
     const TermTables& term = tables_.term[t];
     constexpr int kPlanes = 1 << (kAxes - 2);
-    const Gradients<kAxes> gradients;
-    const std::uint32_t* HWY_RESTRICT lowHash = term.x.lowHash + x_;
-    const std::uint32_t* HWY_RESTRICT highHash = term.x.highHash + x_;
-    std::ptrdiff_t lineHashes = 0, planeHashes = 0;  // distances of their hashes
     HWY_ALIGN std::uint32_t rows[kPlanes][padded(kLines)];
     for (int p = 0; p < kPlanes; ++p)
       for (int n = 0; n < count; n += static_cast<int>(hn::Lanes(du))) {
         const auto sum = hn::Add(hn::LoadU(du, hashes + n), hn::Set(du, planes_[kMaxPlanes * t + p].hash));
         hn::Store(hn::Or(mixedWords(sum), hn::Set(du, 1u)), du, rows[p] + n);
       }
+    Hashes hash{term.x.lowHash + x_, term.x.highHash + x_, 0, 0};
     if (term.lattice->published()) {
-      planeHashes = std::ptrdiff_t{2} * kStrip;
-      lineHashes = planeHashes * kPlanes;
+      hash = {published_, published_ + kStrip, std::ptrdiff_t{2} * kStrip * kPlanes,
+              std::ptrdiff_t{2} * kStrip};
       for (int n = 0; n < count; ++n)
         for (int p = 0; p < kPlanes; ++p) {
           publishedHashes(term, lines[n].index, planes_[kMaxPlanes * t + p].index,
-                          points_ + n * lineHashes + p * planeHashes);
+                          published_ + n * hash.line + p * hash.plane);
           rows[p][n] = 1;
         }
-      lowHash = points_;
-      highHash = points_ + kStrip;
     }
-    // Two lines at a time share the loads of factors.
-    int n = 0;
-    for (; n + 2 <= count; n += 2)
-      expandSome<kAxes, 2>(t, lowHash + n * lineHashes, highHash + n * lineHashes, lineHashes, planeHashes,
-                           lines + n, &rows[0][n], padded(kLines));
-    if (n < count)
-      expandSome<kAxes, 1>(t, lowHash + n * lineHashes, highHash + n * lineHashes, lineHashes, planeHashes,
-                           lines + n, &rows[0][n], padded(kLines));
+    const Points<kAxes> points(planes_ + kMaxPlanes * t);
+    // With two axes an evaluation costs no more than what gathering adds.
+    const bool gathered = kAxes > 2 && term.x.pointHash != nullptr && gathers(term.x.step);
+    // Lines side by side share the loads of factors.
+    constexpr int kMost = kManyRegisters || kAxes == 2 ? 2 : 1;
+    for (int n = 0; n < count;) {
+      const std::uint32_t* row = &rows[0][n];
+      const int side = gathered ? HWY_MIN(2, count - n) : HWY_MIN(kMost, count - n);
+      if (gathered && side == 2)
+        gather<kAxes, 2>(points, term.x, lines, row);
+      else if (gathered)
+        gather<kAxes, 1>(points, term.x, lines, row);
+      else if (side == 2)
+        scatter<kAxes, kMost>(points, term.x, hash, lines, row);
+      else
+        scatter<kAxes, 1>(points, term.x, hash, lines, row);
+      n += side;
+      lines += side;
+      hash.low += side * hash.line;
+      hash.high += side * hash.line;
+    }
   }
 
+  // Whether all lattice points beside a vector of samples are in one vector of points, for any rounding of
+  // places that lie on lattice points.
+  static bool gathers(double step) {
+    const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+    return (lanes - 1) * step < lanes - 2 - 1e-6;
+  }
+
+  // By sample, the hashes' factors of the points below and above; distances between lines' and planes' own.
+  struct Hashes {
+    const std::uint32_t *low, *high;
+    std::ptrdiff_t line, plane;
+  };
+
+  // Lines whose points are evaluated for every sample.
   template <int kAxes, int kCount>
-  HWY_INLINE void expandSome(int t, const std::uint32_t* HWY_RESTRICT lowHash,
-                             const std::uint32_t* HWY_RESTRICT highHash, std::ptrdiff_t lineHashes,
-                             std::ptrdiff_t planeHashes, const LineRef* lines, const std::uint32_t* rows,
-                             int rowStride) const {
-    const Floats d;
+  HWY_INLINE void scatter(const Points<kAxes>& points, const RowPlaces& x, const Hashes& hash,
+                          const LineRef* lines, const std::uint32_t* rows) const {
     const Words du;
     constexpr int kPlanes = 1 << (kAxes - 2);
-    const Gradients<kAxes> gradients;
-    const float* HWY_RESTRICT factors = factors_[t];
-    float* HWY_RESTRICT out[kCount];
     VU row[kPlanes][kCount];
+    for (int n = 0; n < kCount; ++n)
+      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * padded(kLines) + n]);
+    const auto nothing = [](int) { return 0; };
+    expandSome<kAxes, kCount>(
+        x, lines, nothing, [&, hash](int, int n, int i, PointValue& low, PointValue& high) HWY_ATTR {
+          const auto hashOf = [&](const std::uint32_t* from) HWY_ATTR {
+            return [&, from](int p) HWY_ATTR {
+              return hn::Mul(hn::LoadU(du, from + n * hash.line + p * hash.plane + i), row[p][n]);
+            };
+          };
+          low = points(hashOf(hash.low));
+          high = points(hashOf(hash.high));
+        });
+  }
+
+  // Lines whose points are evaluated first, each once.
+  template <int kAxes, int kCount>
+  HWY_INLINE void gather(const Points<kAxes>& points, const RowPlaces& x, const LineRef* lines,
+                         const std::uint32_t* rows) const {
+    const Floats d;
+    const Words du;
+    const std::int32_t* HWY_RESTRICT cell = x.cell + x_;
+    const std::uint32_t* HWY_RESTRICT hash = x.pointHash + cell[0];
+    const int count = cell[width_ - 1] - cell[0] + 2;
     for (int n = 0; n < kCount; ++n) {
-      out[n] = lines_ + lines[n].offset;
-      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * rowStride + n]);
+      float* HWY_RESTRICT to = points_ + std::ptrdiff_t{n} * kPointValues * kPointStride;
+      for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+        const VU h = hn::LoadU(du, hash + i);
+        const PointValue v =
+            points([&](int p) HWY_ATTR { return hn::Mul(h, hn::Set(du, rows[p * padded(kLines) + n])); });
+        if constexpr (kAxes > 2) hn::Store(v.level, d, to + i);
+        hn::Store(v.slope, d, to + kPointStride + i);
+        hn::Store(v.b, d, to + 2 * kPointStride + i);
+      }
     }
+    const hn::RebindToSigned<Floats> di;
+    using Indices = decltype(hn::IndicesFromVec(d, hn::Zero(di)));
+    struct Places {
+      Indices below, above;
+      std::ptrdiff_t base;
+    };
+    const float* HWY_RESTRICT const from = points_;
+    const std::int32_t begin = cell[0];
+    const auto placesOf = [=](int i) HWY_ATTR {
+      const auto at = hn::Sub(hn::LoadU(di, cell + i), hn::Set(di, cell[i]));
+      return Places{hn::IndicesFromVec(d, at), hn::IndicesFromVec(d, hn::Add(at, hn::Set(di, 1))),
+                    cell[i] - begin};
+    };
+    const auto pointsOf = [=](const Places& places, int n, int, PointValue& low, PointValue& high) HWY_ATTR {
+      const auto spread = [&](int value, VF& atLow, VF& atHigh) HWY_ATTR {
+        VF v = hn::LoadU(d, from + (std::ptrdiff_t{n} * kPointValues + value) * kPointStride + places.base);
+        keep(v);
+        atLow = hn::TableLookupLanes(v, places.below);
+        atHigh = hn::TableLookupLanes(v, places.above);
+      };
+      if constexpr (kAxes > 2) spread(0, low.level, high.level);
+      spread(1, low.slope, high.slope);
+      spread(2, low.b, high.b);
+    };
+    expandSome<kAxes, kCount>(x, lines, placesOf, pointsOf);
+  }
+
+  // pointsOf(placesOf(i), n, i, low, high) gives line n's points on either side of the samples from i on.
+  template <int kAxes, int kCount, class PlacesOf, class PointsOf>
+  HWY_INLINE void expandSome(const RowPlaces& x, const LineRef* lines, const PlacesOf& placesOf,
+                             const PointsOf& pointsOf) const {
+    const Floats d;
+    float* HWY_RESTRICT out[kCount];
+    for (int n = 0; n < kCount; ++n) out[n] = lines_ + lines[n].offset;
+    // What is stored might, for all that the compiler knows, be these.
+    const float* HWY_RESTRICT const lowWeights = x.lowWeight + x_;
+    const float* HWY_RESTRICT const highWeights = x.highWeight + x_;
+    const float* HWY_RESTRICT const lowReaches = x.lowReach + x_;
+    const float* HWY_RESTRICT const highReaches = x.highReach + x_;
     const int width = width_;
     for (int i = 0; i < width; i += static_cast<int>(hn::Lanes(d))) {
-      VF a[kPlanes][kCount], b[kPlanes][kCount];  // apart, for short chains of additions
-      for (int p = 0; p < kPlanes; ++p) {
-        VU low[kCount], high[kCount];
-        for (int n = 0; n < kCount; ++n) {
-          const std::ptrdiff_t at = n * lineHashes + p * planeHashes + i;
-          low[n] = gradients.where(hn::Mul(hn::LoadU(du, lowHash + at), row[p][n]));
-          high[n] = gradients.where(hn::Mul(hn::LoadU(du, highHash + at), row[p][n]));
-        }
-        for (int c = 0; c < kAxes; ++c) {
-          const float* factor = factors + std::ptrdiff_t{2} * (p * kAxes + c) * kStrip + i;
-          const auto atLow = hn::Load(d, factor), atHigh = hn::Load(d, factor + kStrip);
-          VF* to = c == 1 ? b[p] : a[p];
-          for (int n = 0; n < kCount; ++n) {
-            const auto g = gradients.component(c, low[n]);
-            to[n] = c < 2 ? hn::Mul(g, atLow) : hn::MulAdd(g, atLow, to[n]);
-          }
-          for (int n = 0; n < kCount; ++n) to[n] = hn::MulAdd(gradients.component(c, high[n]), atHigh, to[n]);
-        }
-      }
+      const auto lowWeight = hn::LoadU(d, lowWeights + i), highWeight = hn::LoadU(d, highWeights + i);
+      const auto lowReach = hn::LoadU(d, lowReaches + i), highReach = hn::LoadU(d, highReaches + i);
+      const auto places = placesOf(i);
       for (int n = 0; n < kCount; ++n) {
-        for (int p = 1; p < kPlanes; ++p) {
-          a[0][n] = hn::Add(a[0][n], a[p][n]);
-          b[0][n] = hn::Add(b[0][n], b[p][n]);
-        }
-        hn::Store(a[0][n], d, out[n] + i);
-        hn::Store(b[0][n], d, out[n] + kStrip + i);
+        PointValue low, high;
+        pointsOf(places, n, i, low, high);
+        VF a = hn::Mul(lowReach, low.slope);
+        if constexpr (kAxes > 2) a = hn::MulAdd(lowWeight, low.level, a);
+        a = hn::MulAdd(highReach, high.slope, a);
+        if constexpr (kAxes > 2) a = hn::MulAdd(highWeight, high.level, a);
+        hn::Store(a, d, out[n] + i);
+        hn::Store(hn::MulAdd(highWeight, high.b, hn::Mul(lowWeight, low.b)), d, out[n] + kStrip + i);
       }
     }
   }
@@ -276,20 +464,50 @@ class GradientRows {
   static constexpr int kPair = 2, kVectors = 4;
   using Sums = VF[kPair][kVectors];
 
-  // Adds one octave. Rows between the same lines (kShared) share the loads of these.
-  template <bool kShared>
-  HWY_INLINE void addOctave(const RowPlace& first, const RowPlace& second, int i, Sums& n) const {
+  // Which lines a row shares with the row before, and need not be loaded again.
+  enum class Shared { kNone, kBoth, kNext };  // kNext: its lower one is the other's upper one
+  static Shared sharedBy(const RowPlace& first, const RowPlace& second) {
+    if (first.lines[0] == second.lines[0] && first.lines[1] == second.lines[1]) return Shared::kBoth;
+    return kManyRegisters && first.lines[1] == second.lines[0] ? Shared::kNext : Shared::kNone;
+  }
+
+  // Adds one octave.
+  template <Shared kShared>
+  static HWY_INLINE void addOctave(const float* HWY_RESTRICT lines, const RowPlace& first,
+                                   const RowPlace& second, int i, Sums& n) {
     const Floats d;
     const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-    for (int k = 0; k < 4; ++k) {
-      const float* HWY_RESTRICT line0 = lines_ + first.lines[k / 2] + (k % 2) * kStrip + i;
-      const float* HWY_RESTRICT line1 = lines_ + second.lines[k / 2] + (k % 2) * kStrip + i;
-      const auto w0 = hn::Set(d, first.weights[k]), w1 = hn::Set(d, second.weights[k]);
-      for (int v = 0; v < kVectors; ++v) {
-        const auto x0 = hn::Load(d, line0 + v * lanes);
-        const auto x1 = kShared ? x0 : hn::Load(d, line1 + v * lanes);
-        n[0][v] = hn::MulAdd(w0, x0, n[0][v]);
-        n[1][v] = hn::MulAdd(w1, x1, n[1][v]);
+    const float* HWY_RESTRICT line0[2] = {lines + first.lines[0] + i, lines + first.lines[1] + i};
+    const float* HWY_RESTRICT line1[2] = {lines + second.lines[0] + i, lines + second.lines[1] + i};
+    for (int part = 0; part < 2; ++part) {  // A, then B
+      if constexpr (kManyRegisters) {
+        const VF low0 = hn::Set(d, first.weights[part]), high0 = hn::Set(d, first.weights[2 + part]);
+        const VF low1 = hn::Set(d, second.weights[part]), high1 = hn::Set(d, second.weights[2 + part]);
+        for (int v = 0; v < kVectors; ++v) {
+          const std::ptrdiff_t at = std::ptrdiff_t{part} * kStrip + v * lanes;
+          VF x0 = hn::Load(d, line0[0] + at), x1 = hn::Load(d, line0[1] + at);
+          if constexpr (kShared == Shared::kBoth) keep(x0);
+          if constexpr (kShared != Shared::kNone) keep(x1);
+          const VF y0 = kShared == Shared::kBoth   ? x0
+                        : kShared == Shared::kNext ? x1
+                                                   : hn::Load(d, line1[0] + at);
+          const VF y1 = kShared == Shared::kBoth ? x1 : hn::Load(d, line1[1] + at);
+          n[0][v] = hn::MulAdd(low0, x0, n[0][v]);
+          n[1][v] = hn::MulAdd(low1, y0, n[1][v]);
+          n[0][v] = hn::MulAdd(high0, x1, n[0][v]);
+          n[1][v] = hn::MulAdd(high1, y1, n[1][v]);
+        }
+      } else {  // one line after the other, for fewer numbers at a time
+        for (int side = 0; side < 2; ++side) {
+          const auto w0 = hn::Set(d, first.weights[2 * side + part]),
+                     w1 = hn::Set(d, second.weights[2 * side + part]);
+          for (int v = 0; v < kVectors; ++v) {
+            const std::ptrdiff_t at = std::ptrdiff_t{part} * kStrip + v * lanes;
+            const auto x = hn::Load(d, line0[side] + at);
+            n[0][v] = hn::MulAdd(w0, x, n[0][v]);
+            n[1][v] = hn::MulAdd(w1, kShared == Shared::kBoth ? x : hn::Load(d, line1[side] + at), n[1][v]);
+          }
+        }
       }
     }
   }
@@ -299,49 +517,57 @@ class GradientRows {
       for (auto& v : row) v = value;
   }
 
-  template <Fractal kFractal>
-  HWY_INLINE void sum(int first, int terms, const RowPlace* places, int rows, float* HWY_RESTRICT out) const {
+  // sink(row, i, v) takes the samples from i on of each row.
+  template <Fractal kFractal, class Sink>
+  HWY_INLINE void sum(int first, int terms, const RowPlace* places, int rows, const Sink& sink) const {
     const Floats d;
-    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-    const int width = width_;
-    for (int r = 0; r < rows;
-         r += kPair, places += std::ptrdiff_t{kPair} * tables_.terms, out += kPair * kStrip) {
-      // A last row alone is its own partner; the chunk has room for what that gives.
-      const RowPlace* partner = r + 1 < rows ? places + tables_.terms : places;
-      for (int i = 0; i < width; i += kVectors * static_cast<int>(lanes)) {
+    const auto lanes = static_cast<int>(hn::Lanes(d));
+    const int width = width_, stride = tables_.terms;
+    const float* HWY_RESTRICT const lines = lines_;
+    const auto bias = hn::Set(d, tables_.bias);
+    for (int r = 0; r < rows; r += kPair, places += std::ptrdiff_t{kPair} * stride) {
+      // A last row alone is its own partner.
+      const bool pair = r + 1 < rows;
+      const RowPlace* partner = pair ? places + stride : places;
+      for (int i = 0; i < width; i += kVectors * lanes) {
         Sums s;
-        setAll(s, hn::Set(d, tables_.bias));
+        setAll(s, bias);
         for (int t = 0; t < terms; ++t) {
-          const bool shared =
-              places[t].lines[0] == partner[t].lines[0] && places[t].lines[1] == partner[t].lines[1];
           if constexpr (kFractal == Fractal::kFbm) {
-            if (shared)
-              addOctave<true>(places[t], partner[t], i, s);
-            else
-              addOctave<false>(places[t], partner[t], i, s);
+            switch (sharedBy(places[t], partner[t])) {
+              case Shared::kBoth:
+                addOctave<Shared::kBoth>(lines, places[t], partner[t], i, s);
+                break;
+              case Shared::kNext:
+                addOctave<Shared::kNext>(lines, places[t], partner[t], i, s);
+                break;
+              case Shared::kNone:
+                addOctave<Shared::kNone>(lines, places[t], partner[t], i, s);
+                break;
+            }
           } else {
             Sums n;
             setAll(n, hn::Zero(d));
-            addOctave<false>(places[t], partner[t], i, n);
+            addOctave<Shared::kNone>(lines, places[t], partner[t], i, n);
             for (int row = 0; row < kPair; ++row)
               for (int v = 0; v < kVectors; ++v)
                 s[row][v] = shaped<kFractal>(n[row][v], s[row][v], tables_.term[first + t].weight);
           }
         }
-        for (int row = 0; row < kPair; ++row)
-          for (int v = 0; v < kVectors; ++v)
-            hn::Store(s[row][v], d, out + static_cast<std::ptrdiff_t>(row) * kStrip + i + v * lanes);
+        for (int v = 0; v < kVectors; ++v) sink(r, i + v * lanes, s[0][v]);
+        if (pair)
+          for (int v = 0; v < kVectors; ++v) sink(r + 1, i + v * lanes, s[1][v]);
       }
     }
   }
 
   const GradientTables& tables_;
   int x_, width_;
-  bool fresh_ = true;      // no lines are left
-  float* lines_;           // kLines a term
-  Plane* planes_;          // kMaxPlanes a term
-  float** factors_;        // of a term
-  std::uint32_t* points_;  // published hashes: of a line, a plane, the lower corners, then the upper ones
+  bool fresh_ = true;                   // no lines are left
+  float* lines_;                        // kLines a term
+  Plane* planes_;                       // kMaxPlanes a term
+  float* points_;                       // of two lines, each value of PointValue
+  std::uint32_t* published_ = nullptr;  // hashes: of a line, a plane, the lower corners, then the upper ones
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE

@@ -127,6 +127,45 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
   }
 }
 
+// One channel of floats, vector by vector as it is made: rows of `width` samples. Memory is written while the
+// next samples are worked out.
+class FloatSink {
+ public:
+  FloatSink(const FillJob& job, int x, int y, int z, int width)
+      : stride_(job.box.size.x), width_(width), low_(job.low), high_(job.high) {
+    const glm::ivec3& size = job.box.size;
+    out_ = static_cast<float*>(job.out) + (static_cast<std::size_t>(z) * size.y + y) * size.x + x;
+    constexpr std::size_t kBytes = sizeof(float) * hn::MaxLanes(hn::ScalableTag<float>());
+    stream_ = job.stream && reinterpret_cast<std::uintptr_t>(out_) % kBytes == 0 &&
+              static_cast<std::size_t>(stride_) * sizeof(float) % kBytes == 0;
+  }
+
+  template <class V>
+  HWY_INLINE void operator()(int row, int i, V v) const {
+    const hn::ScalableTag<float> d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    v = hn::Clamp(v, hn::Set(d, low_), hn::Set(d, high_));
+    float* to = out_ + row * stride_ + i;
+    if (i + lanes <= width_) {
+      if (stream_)
+        hn::Stream(v, d, to);
+      else
+        hn::StoreU(v, d, to);
+    } else if (i < width_) {
+      HWY_ALIGN float rest[hn::MaxLanes(hn::ScalableTag<float>())];
+      hn::Store(v, d, rest);
+      std::memcpy(to, rest, sizeof(float) * static_cast<std::size_t>(width_ - i));
+    }
+  }
+
+ private:
+  float* out_;
+  std::ptrdiff_t stride_;
+  int width_;
+  float low_, high_;
+  bool stream_;  // past the caches, where whole vectors go to their own multiples
+};
+
 // Rows of a block, from sample x of row y and slice z of the box on; each `stride` floats behind the one
 // before.
 template <Format kFormat, int kChannels>

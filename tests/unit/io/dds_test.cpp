@@ -242,10 +242,10 @@ TEST_F(Dds, WhatIsRefused) {
   h = good;
   h.width = 0;
   put(h, "abcd");
-  EXPECT_EQ(refusal(), "the width is 0; expected at least 1 (byte 16)");
+  EXPECT_EQ(refusal(), "the width is 0; expected 1 to 2147483647 (byte 16)");
   h.width = 0x80000000;
   put(h, "abcd");
-  EXPECT_EQ(refusal(), "the width is 2147483648; expected at least 1 (byte 16)");
+  EXPECT_EQ(refusal(), "the width is 2147483648; expected 1 to 2147483647 (byte 16)");
   h = good;
   h.levels = 3;
   put(h, "abcde");

@@ -99,6 +99,19 @@ std::vector<Case> cases() {
   all.push_back({"dense", dense, Grid::tile({36, 30, 20})});
   dense.frequency = {40, 40, 40};
   all.push_back({"tiny", dense, Grid::tile({36, 30, 20})});
+  // Octaves whose tiles are cut into cubes, the second added to the first.
+  NoiseParams cubes{.kind = Kind::kCellular, .frequency = {4, 4, 4}, .octaves = 2};
+  all.push_back({"cubes", cubes, Grid::tile({36, 34, 35})});
+  // Vectors of 16 samples that begin and end on lattice points.
+  all.push_back({"ends on points", {.frequency = {140, 3, 2}, .octaves = 1}, Grid::tile({150, 29, 13})});
+  // Lattice points less and more than a sample apart, near the step up to which a vector holds all of them.
+  for (const double x : {46.0, 59.0, 65.0})
+    for (const bool evolving : {false, true}) {
+      NoiseParams fine{.frequency = {x, 20, 9}, .octaves = 2};
+      if (evolving) fine.time = 0.7;
+      all.push_back(
+          {"fine " + std::to_string(x) + (evolving ? " evolving" : ""), fine, Grid::tile({70, 29, 13})});
+    }
   return all;
 }
 
@@ -128,19 +141,23 @@ std::vector<std::int64_t> targets(bool fused) {
 TEST(Fill, AgreesWithThePointFunctionOnEveryInstructionSet) {
   for (const Case& c : cases()) {
     const Noise noise(c.params);
+    const int channels = noise.channels();
+    const std::size_t count = static_cast<std::size_t>(c.grid.size.x) * c.grid.size.y * c.grid.size.z *
+                              static_cast<std::size_t>(channels);
+    std::vector<double> exact;  // of every seventh value
+    for (std::size_t i = 0; i < count; i += 7) {
+      const std::size_t sample = i / static_cast<std::size_t>(channels);
+      const glm::dvec3 place(static_cast<double>(sample % c.grid.size.x),
+                             static_cast<double>(sample / c.grid.size.x % c.grid.size.y),
+                             static_cast<double>(sample / c.grid.size.x / c.grid.size.y));
+      exact.push_back(noise.sample((place + 0.5) * c.grid.spacing, static_cast<int>(i % channels)));
+    }
     for (const std::int64_t target : targets(false)) {
       hwy::SetSupportedTargetsForTest(target);
       const std::vector<float> values = filled<float>(noise, c.grid);
-      const std::size_t channels = static_cast<std::size_t>(noise.channels());
       double worst = 0.0;
-      for (std::size_t i = 0; i < values.size(); i += 7) {
-        const std::size_t sample = i / channels;
-        const glm::dvec3 place(static_cast<double>(sample % c.grid.size.x),
-                               static_cast<double>(sample / c.grid.size.x % c.grid.size.y),
-                               static_cast<double>(sample / c.grid.size.x / c.grid.size.y));
-        const double v = noise.sample((place + 0.5) * c.grid.spacing, static_cast<int>(i % channels));
-        worst = std::max(worst, std::abs(v - values[i]));
-      }
+      for (std::size_t i = 0; i < exact.size(); ++i)
+        worst = std::max(worst, std::abs(exact[i] - values[7 * i]));
       EXPECT_LE(worst, c.tolerance) << c.name << " " << hwy::TargetName(target);
     }
     hwy::SetSupportedTargetsForTest(0);
@@ -193,6 +210,25 @@ TEST(Fill, GivesABoxWhatTheWholeHasThere) {
         }
     }
   }
+}
+
+// Buffers larger than the caches are written past them, where rows begin at whole vectors.
+TEST(Fill, IsTheSameInBuffersLargerThanCaches) {
+  for (const Kind kind : {Kind::kPerlin, Kind::kCellular})
+    for (const int width : {304, 301}) {
+      const Noise noise({.kind = kind, .tile = false, .frequency = {0.04, 0.05, 0.06}, .octaves = 2});
+      const Grid grid{{width, 256, 16}, glm::dvec3(1.0)};
+      const std::size_t slice = static_cast<std::size_t>(width) * 256;
+      std::vector<float> large(slice * 16 + 1);
+      for (const std::size_t shift : {0, 1}) {  // by a float
+        noise.fill(grid, std::span(large).subspan(shift, slice * 16));
+        for (int z = 0; z < 16; ++z) {
+          const auto small = filled<float>(noise, grid, {{0, 0, z}, {width, 256, 1}});
+          EXPECT_EQ(std::memcmp(small.data(), &large[shift + slice * z], slice * sizeof(float)), 0)
+              << width << " " << z;
+        }
+      }
+    }
 }
 
 // Integers and halves are what the floats round to.
