@@ -13,6 +13,12 @@ uniform float uSunRadius;         // rad
 uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
+#ifdef WELKIN_SKY_BOX
+uniform samplerCube uSkyBox;      // in the place of the clear sky
+uniform mat3 uBoxFromEnu;
+uniform float uBoxScale;          // cd/m2 for each unit of it
+uniform float uBoxGround;         // 1: the ground below the horizon, else the box
+#endif
 
 float groundDistance(vec3 dir) {
   float b = (uEarthRadiusM + uEyeM) * dir.z;
@@ -72,6 +78,10 @@ vec3 groundLuminance(vec3 dir, float distanceM, float dither) {
 }
 
 vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad, float dither) {
+#ifdef WELKIN_SKY_BOX
+  vec3 box = uBoxScale * texture(uSkyBox, uBoxFromEnu * dir).xyz;  // before any branch, for its mipmaps
+  if (groundM >= 1e8 || uBoxGround < 0.5) return box;
+#endif
   if (groundM < 1e8) {
     vec3 inscatter, through;
     aerial(dir, groundM, inscatter, through);

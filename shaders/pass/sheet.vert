@@ -16,6 +16,7 @@ uniform Sheet uSheet;
 uniform float uScale;                     // written value for each cd/m2
 uniform DropletPhase uDroplets;
 uniform float uSunOnSheet;                // share of the key light that sheets above let through
+uniform vec3 uTint;                       // share of light that the cloud scatters
 uniform vec3 uSkyOnSheet;                 // mean luminance of the sky over it, cd/m2
 
 uniform float uTexelsPerPixel;            // of the pattern, seen square on at a distance of 1 m
@@ -54,8 +55,8 @@ void main() {
 
   CloudDepths d = CloudDepths(0.0, 0.0, 0.5 * uSheet.typicalDepth, 0.5 * uSheet.typicalDepth);
   vec2 shares = cloudSkyShares(d);
-  vec3 around = (uSkyOnSheet * shares.x + uGroundLight * shares.y) * through;
-  vec3 key = uSunOnSheet * keyLightAt(uSheet.heightM, iPositionM) * through;
+  vec3 around = (uSkyOnSheet * shares.x + uGroundLight * shares.y) * through * uTint;
+  vec3 key = uSunOnSheet * keyLightAt(uSheet.heightM, iPositionM) * through * uTint;
 #if WELKIN_TIER == 2
   vInscatter = inscatter;
   vKey = key;

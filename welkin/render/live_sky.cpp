@@ -13,6 +13,7 @@
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
+#include "welkin/render/sky_box_texture.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
 #include "welkin/shading/lens_flare.h"
@@ -27,22 +28,29 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
+gpu::Program backdropProgram(bool overSkyBox) {
+  shading::ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", ""}};
+  if (overSkyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  return fullscreenProgram("pass/backdrop.frag", defines);
+}
+
 }  // namespace
 
 struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
-  gpu::Program backdrop =
-      fullscreenProgram("pass/backdrop.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}});
+  gpu::Program backdrop = backdropProgram(false), boxBackdrop;  // the latter once there is a box
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
 
   std::optional<scene::SkyState> state;
   std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
+  std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
 
   void update(const scene::SkyState& next);
+  void updateBox(const scene::SkyBox& wanted);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
@@ -80,6 +88,7 @@ void LiveSky::update(const scene::SkyState& state) {
 
 void LiveSky::Impl::update(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
+  if (!same) updateBox(next.scene.skyBox);  // first, as its files may be missing
   state = next;
   if (!same) {
     sheets.clear();
@@ -99,11 +108,21 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
+  for (ThinLayer& sheet : sheets)
+    sheet.matter = shading::matterAt(sheet.sheet, sheet.described, state->secondsAfter);
   updateAmbient();
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);
   sheetPass.setSky(sky);
-  setUniforms(backdrop, sky);
+  setUniforms(box ? boxBackdrop : backdrop, sky);
+}
+
+void LiveSky::Impl::updateBox(const scene::SkyBox& wanted) {
+  if (box && box->box() == wanted) return;
+  box.reset();
+  if (wanted.empty()) return;
+  box.emplace(wanted);
+  if (boxBackdrop.id() == 0) boxBackdrop = backdropProgram(true);
 }
 
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
@@ -119,7 +138,8 @@ void LiveSky::Impl::updateAmbient() {
 }
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
-  gpu::Program& p = backdrop;
+  gpu::Program& p = box ? boxBackdrop : backdrop;
+  if (box) box->bind(p);
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
   p.set("uEnuFromCamera", view.enuFromCamera);

@@ -59,6 +59,7 @@ void SheetPass::draw(const SheetDraw& sheet, const shading::ViewParts& view, con
   setSheet(p, kSheet, sheet.look);
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uClipFromEnu", view.clipFromEnu);
+  p.set("uTint", sheet.look.tint);
   p.set("uSunStep", sheet.look.sunStep);
   p.set("uTexelsPerPixel", sheet.look.texelsPerPixel);
   p.set("uSunOnSheet", sheet.light.sun);

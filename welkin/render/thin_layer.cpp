@@ -3,30 +3,38 @@
 
 #include <array>
 
+#include "welkin/scene/sheet_texture.h"
 #include "welkin/shading/sheet_mesh.h"
 
 namespace welkin::render {
+
+namespace {
+
+constexpr float kAnisotropy = 4.0f;
+
+}  // namespace
 
 ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM) {
   constexpr gpu::TextureOptions kTiling{.format = gpu::Format::kR16F,
                                         .filter = gpu::Filter::kMipmap,
                                         .wrapX = gpu::Wrap::kRepeat,
                                         .wrapY = gpu::Wrap::kRepeat,
-                                        .wrapZ = gpu::Wrap::kRepeat};
+                                        .wrapZ = gpu::Wrap::kRepeat,
+                                        .anisotropy = kAnisotropy};
   ThinLayer layer;
   layer.sheet = sheet;
   const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
   gpu::TextureOptions options = kTiling;
   if (slopes) options.format = gpu::Format::kRgba16F;
+  const scene::SheetPattern pattern = scene::patternOf(sheet, seed);
+  layer.described = layer.matter = shading::matterOf(sheet, pattern.values(), seed);
   if (sheet.surface == scene::SheetSurface::kDome) {
-    const Volume<float> pattern = scene::domePattern(sheet, seed);
-    layer.matter = shading::matterOf(sheet, pattern.data, seed);
-    layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
+    layer.sheet.texels = pattern.volume.nx;
+    layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern.volume) : pattern.volume, options);
     layer.volume.makeMipmaps();
   } else {
-    const Image<float> pattern = scene::flatPattern(sheet, seed);
-    layer.matter = shading::matterOf(sheet, pattern.data, seed);
-    layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern) : pattern, options);
+    layer.sheet.texels = pattern.flat.width;
+    layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern.flat) : pattern.flat, options);
     layer.flat.makeMipmaps();
   }
   const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);

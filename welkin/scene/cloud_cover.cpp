@@ -97,6 +97,13 @@ std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weat
     field::CloudLayer shape = shapeOf(weather.layers[i], calibration[i].seed, secondsAfter);
     shape.threshold = calibration[i].threshold;
     shape.extinction = calibration[i].extinction;
+    if (scene.drift.windDeg != 0.0) {
+      // Where the turning wind has taken it, less where the wind as described would have.
+      const weather::Layer& layer = weather.layers[i];
+      const glm::dvec2 wandered = windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter) -
+                                  windPath({}, 0, layer.windFromDeg, secondsAfter);
+      shape.driftM += glm::vec2(layer.windSpeedMps * wandered);
+    }
     shapes.push_back(shape);
   }
   return std::make_shared<field::CloudField>(std::move(noise), std::move(shapes), scene.place.altitudeM);

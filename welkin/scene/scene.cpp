@@ -83,11 +83,17 @@ void describe(Scene& s, ParamVisitor& v) {
             "planes, on planes bent over the earth (skyplane), or on domes"},
            s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
+  v.value({"theme", "",
+           "what technique, tier, drift and sheets start from: thesis-overcast, thesis-broken, thesis-few, "
+           "thesis-combined, thesis-dome, realistic-skies, or a theme's file beside the scene file"},
+          s.theme);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
   v.group({"camera", "", "where the eye is and what it sees"}, s.camera);
   v.group({"output", "", "the picture"}, s.output);
   v.group({"ground", "", "the ground below"}, s.ground);
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
+  v.group({"drift", "", "wind and cover that wander by themselves"}, s.drift);
+  v.group({"sky_box", "", "pictures all around in the place of the clear sky, behind thin sheets"}, s.skyBox);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
   v.list({"sheet", "", "a thin layer of cloud by hand, drawn beside those of the weather"}, s.sheets);
 }
@@ -112,6 +118,9 @@ void validate(const Scene& s) {
   for (const Sheet& sheet : s.sheets) validate(sheet);
   if (!s.sheets.empty() && !drawsSheets(s.technique))
     throw ParameterError("[[sheet]] is drawn with technique plane, skyplane or dome, not beside volumes");
+  validate(s.skyBox);
+  if (!s.skyBox.empty() && !drawsSheets(s.technique))
+    throw ParameterError("[sky_box] is drawn with technique plane, skyplane or dome, not behind volumes");
   if (s.output.flare > 0.0 && !drawsSheets(s.technique))
     throw ParameterError("output.flare is drawn with technique plane, skyplane or dome, not beside volumes");
 }
@@ -132,7 +141,14 @@ std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather)
     }
   }
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
+  if (scene.drift != Drift{})
+    for (std::size_t i = 0; i < sheets.size(); ++i)
+      sheets[i].drift = {scene.drift, windSeed(scene), hashOf(sheetSeed(scene, i), 0xc0e4)};
   return sheets;
+}
+
+std::uint64_t windSeed(const Scene& scene) {
+  return hashOf(static_cast<std::uint64_t>(scene.seed), 0x714d);
 }
 
 std::uint64_t sheetSeed(const Scene& scene, std::size_t index) {

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "welkin/core/params.h"
+#include "welkin/scene/drift.h"
 #include "welkin/scene/sheet.h"
+#include "welkin/scene/sky_box.h"
 #include "welkin/sky/atmosphere_params.h"
 #include "welkin/weather/weather.h"
 
@@ -80,7 +82,11 @@ struct Scene {
   std::vector<weather::Layer> layers;  // the weather by hand
   Technique technique = Technique::kAuto;
   SheetTier tier = SheetTier::kLit;  // of layers that are drawn as sheets
+  std::optional<std::string> theme;  // in scene files: what technique, tier, drift and sheets start from;
+                                     // empty once it is read (theme.h)
   std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
+  Drift drift;                       // of wind and cover
+  SkyBox skyBox;                     // behind thin layers
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
@@ -94,8 +100,11 @@ void describe(Scene& s, ParamVisitor& v);
 void validate(const Scene& s);
 
 // The sheets of a scene: the layers of the weather where the technique draws them so, then those by hand.
+// Each with its share of the scene's drift.
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);
 bool drawsSheets(Technique technique);
+// How the wind of all layers turns.
+std::uint64_t windSeed(const Scene& scene);
 // Of the pattern of the sheet with this index among them.
 std::uint64_t sheetSeed(const Scene& scene, std::size_t index);
 

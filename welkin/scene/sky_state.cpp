@@ -8,6 +8,7 @@
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
+#include "welkin/scene/sheet_texture.h"
 #include "welkin/sky/light.h"
 
 namespace welkin::scene {
@@ -68,17 +69,31 @@ AmbientLight ambientLight(const SkyState& s) {
 }
 
 // The cover of layers drawn as sheets: each as its pattern has it, all together by random overlap.
-DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather) {
+DeliveredCover sheetCover(const Scene& scene, const weather::Weather& weather, double secondsAfter) {
   DeliveredCover cover;
   const std::vector<Sheet> sheets = sheetsOf(scene, weather);
-  double clear = 1.0;
+  double clear = 1.0, asked = 1.0;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    const double share = deliveredCover(sheets[i], sheetSeed(scene, i));
-    cover.layers.push_back({weather.layers[i].oktas, kOktas * share});
+    const double share = deliveredCover(sheets[i], sheetSeed(scene, i), secondsAfter);
+    const double oktas =
+        oktasAt(scene.drift, sheets[i].drift.coverSeed, weather.layers[i].oktas, secondsAfter);
+    cover.layers.push_back({oktas, kOktas * share});
     clear *= 1.0 - share;
+    asked *= 1.0 - oktas / kOktas;
   }
-  cover.sky = {weather.requestedOktas, kOktas * (1.0 - clear)};
+  const bool drifts = scene.drift.coverOktas != 0.0;
+  cover.sky = {drifts ? kOktas * (1.0 - asked) : weather.requestedOktas, kOktas * (1.0 - clear)};
   return cover;
+}
+
+// What is wrong with the files of the sheets by hand.
+std::vector<std::string> textureWarnings(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (const Sheet& sheet : scene.sheets)
+    if (sheet.texture)
+      if (std::string warning = patternOf(sheet, 0).warning; !warning.empty())
+        warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 double headingOf(const SkyState& s) {
@@ -116,11 +131,12 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     s.cover = previous->cover;
     s.skyCover = previous->skyCover;
   } else {
-    DeliveredCover cover =
-        drawsSheets(scene.technique) ? sheetCover(scene, s.weather) : measureCover(s.weather, *s.clouds);
+    DeliveredCover cover = drawsSheets(scene.technique) ? sheetCover(scene, s.weather, secondsAfter)
+                                                        : measureCover(s.weather, *s.clouds);
     s.cover = std::move(cover.layers);
     s.skyCover = cover.sky;
   }
+  s.warnings = previous ? previous->warnings : textureWarnings(scene);
 
   s.atmosphere =
       previous ? previous->atmosphere

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "welkin/scene/cloud_cover.h"
@@ -45,9 +46,10 @@ struct SkyState {
   std::shared_ptr<const field::CloudField> clouds;
   std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
   AmbientLight ambient;
-  std::vector<LayerCover> cover;  // a layer each, in the order of weather.layers
-  LayerCover skyCover;            // the whole sky
-  double headingDeg = 0.0;        // the camera's, with "absent" resolved
+  std::vector<LayerCover> cover;      // a layer each, in the order of weather.layers
+  LayerCover skyCover;                // the whole sky
+  std::vector<std::string> warnings;  // files that could not be used, and what stands in for them
+  double headingDeg = 0.0;            // the camera's, with "absent" resolved
 };
 
 // The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that
