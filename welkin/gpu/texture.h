@@ -33,6 +33,10 @@ struct TextureOptions {
   float anisotropy = 1.0f;
 };
 
+// The anisotropy that drawing in the current context can afford: `wanted` on a graphics card, 1 on software
+// rasterisers.
+float affordableAnisotropy(float wanted);
+
 // What all kinds share. Movable; not copyable.
 class Texture {
  public:

@@ -10,7 +10,8 @@ namespace welkin::render {
 
 namespace {
 
-constexpr float kAnisotropy = 4.0f;
+// Towards the horizon a pixel's footprint on a sheet is long and narrow.
+constexpr float kAnisotropy = 8.0f;
 
 }  // namespace
 
@@ -19,8 +20,7 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
                                         .filter = gpu::Filter::kMipmap,
                                         .wrapX = gpu::Wrap::kRepeat,
                                         .wrapY = gpu::Wrap::kRepeat,
-                                        .wrapZ = gpu::Wrap::kRepeat,
-                                        .anisotropy = kAnisotropy};
+                                        .wrapZ = gpu::Wrap::kRepeat};
   ThinLayer layer;
   layer.sheet = sheet;
   const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
@@ -34,6 +34,7 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
     layer.volume.makeMipmaps();
   } else {
     layer.sheet.texels = pattern.flat.width;
+    options.anisotropy = gpu::affordableAnisotropy(kAnisotropy);
     layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern.flat) : pattern.flat, options);
     layer.flat.makeMipmaps();
   }
