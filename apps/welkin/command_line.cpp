@@ -79,6 +79,8 @@ void describeRender(CLI::App* app, RenderArgs& a) {
   add(app, "--time", a.time, "UTC", one("time"))->group("Sky");
   add(app, "--at", a.at, "SECONDS", one("at_s"))->group("Sky");
   add(app, "--seed", a.seed, "N", one("seed"))->group("Sky");
+  add(app, "--theme", a.theme, "NAME|FILE", "in the place of the scene file's theme: " + one("theme"))
+      ->group("Sky");
   add(app, "--eye", a.eye, "M", one("camera.eye_m"))->group("Eye");
   add(app, "--look", a.look, "HEADING,PITCH[,FOV]",
       helpOfSeveral(docs, {"camera.heading_deg", "camera.pitch_deg", "camera.fov_deg"}))
@@ -249,6 +251,9 @@ Command parseCommandLine(int argc, const char* const* argv) {
                    "scene file .toml, picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
       ->type_name("FILE");
   infoApp->add_flag("--json", info.json, "as JSON");
+  infoApp->add_flag("--theme", info.theme,
+                    wrapped("of a scene file only its sheets and how they are drawn, as a theme's file; FILE "
+                            "may be a built-in theme's name"));
 
   NoiseArgs noise;
   CLI::App* noiseApp =

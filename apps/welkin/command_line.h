@@ -15,7 +15,7 @@ using Flag = std::optional<std::string>;  // absent when not on the command line
 
 struct RenderArgs {
   Flag scene, out;
-  Flag metar, place, time, at, seed;
+  Flag metar, place, time, at, seed, theme;
   Flag eye, look, projection, size;
   Flag renderer, technique, quality, spp, exposure;
   Flag frames, fps, speed;
@@ -36,7 +36,7 @@ struct SunArgs {
 
 struct InfoArgs {
   std::string file;
-  bool json = false;
+  bool json = false, theme = false;
 };
 
 // What a file of texels is to be (texel_flags.h).

@@ -14,6 +14,7 @@
 #include "welkin/io/vdb.h"
 #include "welkin/scene/param_json.h"
 #include "welkin/scene/scene_file.h"
+#include "welkin/scene/theme.h"
 
 namespace welkin::app {
 namespace {
@@ -103,10 +104,27 @@ void printPlain(const Json& j, int indent = 0) {
   }
 }
 
+// Of a scene file, which a theme's file is as well, or a built-in theme.
+void printTheme(const InfoArgs& args, bool isFile) {
+  const scene::Theme theme = [&] {
+    try {
+      return isFile ? scene::themeOf(scene::readSceneFile(args.file).scene) : scene::readTheme(args.file);
+    } catch (const ParameterError& e) {
+      throw UsageError("info --theme: " + std::string(e.what()));
+    }
+  }();
+  for (const scene::Sheet& sheet : theme.sheets) scene::validate(sheet);
+  fmt::print("{}", args.json ? scene::toJson(theme) + "\n" : scene::themeToToml(theme));
+}
+
 }  // namespace
 
 int runInfo(const InfoArgs& args) {
   const std::string extension = std::filesystem::path(args.file).extension().string();
+  if (args.theme) {
+    printTheme(args, extension == ".toml");
+    return 0;
+  }
   if (extension == ".toml") {
     const scene::Scene s = scene::readSceneFile(args.file).scene;
     scene::validate(s);

@@ -44,4 +44,9 @@ void ProgressLine::show(double fraction) {
   std::fflush(stderr);
 }
 
+void ProgressLine::warn(const std::string& what) {
+  fmt::print(stderr, "{}welkin: warning: {}\n", drawn_ ? "\r\033[K" : "", what);
+  std::fflush(stderr);
+}
+
 }  // namespace welkin::app

@@ -22,6 +22,8 @@ class ProgressLine {
   void begin(std::string label);
   // The fraction of that part that is done, in [0, 1]. Draws at most ten times a second.
   void show(double fraction);
+  // A line of its own above it, on a terminal or not: "welkin: warning: ...".
+  void warn(const std::string& what);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -67,7 +67,7 @@ class Sequence {
   void drawFrame(std::int64_t i, render::SkyRenderer& renderer, ProgressLine& progress) {
     const Clock::time_point begin = Clock::now();
     throwIfInterrupted();
-    const scene::SkyState state = stateOf(i);
+    const scene::SkyState state = stateOf(i, progress);
     const double buildMs = msSince(begin);
     if (i == 0) progress.begin("drawing");
     throwIfInterrupted();
@@ -89,10 +89,11 @@ class Sequence {
 
   // The sky of a frame. The camera stands still: a heading that follows the light is the one of the first
   // frame.
-  scene::SkyState stateOf(std::int64_t i) {
+  scene::SkyState stateOf(std::int64_t i, ProgressLine& progress) {
     const scene::Scene& s = settings_.scene;
     if (i == 0) {
       report_.state = scene::buildSky(s, s.atS);
+      for (const std::string& warning : report_.state.warnings) progress.warn(warning);
       return report_.state;
     }
     const double t = s.atS + static_cast<double>(i) * s.output.speed / s.output.fps;

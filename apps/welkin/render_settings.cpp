@@ -12,6 +12,7 @@
 #include "welkin/io/video.h"
 #include "welkin/scene/param_text.h"
 #include "welkin/scene/scene_file.h"
+#include "welkin/scene/theme.h"
 
 namespace welkin::app {
 namespace {
@@ -48,6 +49,14 @@ void setList(Scene& s, const std::string& flag, const std::string& text, char se
   if (parts.size() < least || parts.size() > paths.size())
     throw UsageError(flag + ": expected " + std::string(expected) + ", found \"" + text + "\"");
   for (std::size_t i = 0; i < parts.size(); ++i) set(s, flag.c_str(), paths.begin()[i], parts[i]);
+}
+
+scene::Theme themeOfFlag(const std::string& text) {
+  try {
+    return scene::readTheme(text);
+  } catch (const ParameterError& e) {
+    throw UsageError(std::string("--theme: ") + e.what());
+  }
 }
 
 void checkRenderer(const RenderArgs& a) {
@@ -116,10 +125,13 @@ RenderSettings renderSettings(const RenderArgs& a) {
   if (a.place) setPlace(flagged, "--place", *a.place);
   bool sizeGiven = a.size.has_value();
   if (a.scene) {
+    if (a.theme) themeOfFlag(*a.theme);  // so that a wrong name is the flag's mistake
     scene::SceneFile file = scene::readSceneFile(
-        *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt);
+        *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt, a.theme);
     sizeGiven = sizeGiven || file.gives("output.width") || file.gives("output.height");
     r.scene = std::move(file.scene);
+  } else if (a.theme) {
+    scene::apply(themeOfFlag(*a.theme), r.scene);
   }
   Scene& s = r.scene;
   if (a.place) setPlace(s, "--place", *a.place);

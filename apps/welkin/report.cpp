@@ -90,6 +90,7 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   j["sheets"] = sheetsJson(s);
   j["sky_cover"] = coverJson(s.skyCover);
   j["notes"] = s.weather.notes;
+  for (const std::string& warning : s.warnings) j["notes"].push_back(warning);
   j["exposure_ev"] = r.frames.empty() ? Json() : Json(r.frames.front().exposureEv);
   j["passes"] = Json::array();
   for (const render::PassTime& p : r.passes) j["passes"].push_back({{"name", p.name}, {"ms", p.ms}});

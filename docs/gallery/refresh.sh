@@ -39,4 +39,21 @@ picture living "$here/living.toml" --at 300 --size 960x540
 picture flare_right "$here/flare.toml" --look 250,16 --size 640x360
 picture flare_high "$here/flare.toml" --look 288,8 --size 640x360
 picture flare_middle "$here/flare.toml" --look 276.3,26.9 --size 640x360
+# The thesis's figures 21 to 25.
+for theme in overcast broken few combined; do
+  picture "thesis_$theme" "$here/thesis.toml" --theme "thesis-$theme" --size 640x400
+done
+picture thesis_dusk "$here/thesis.toml" --theme thesis-broken --time 2026-06-21T18:40:00Z --look 290,14 --size 640x400
+# Its figures 30 and 31: one dome at four cutoffs.
+for cutoff in 0.85 0.78 0.72 0.61; do
+  { cat "$here/thesis.toml"; printf '[[sheet]]\npreset = "thesis-dome"\ncutoff = %s\ntile_m = 6000\n' "$cutoff"; } > "$work/dome.toml"
+  "$program" render "$work/dome.toml" --technique dome --look 165,32 --size 480x300 -o "$work/cutoff_$cutoff.png"
+done
+montage "$work"/cutoff_0.85.png "$work"/cutoff_0.78.png "$work"/cutoff_0.72.png "$work"/cutoff_0.61.png -tile 2x2 \
+  -geometry +2+2 -quality 86 "$here/thesis_dome_cutoffs.jpg"
+# Clouds over a sky box, which is a picture of ours.
+"$program" render --place 47,8 --time 2026-06-21T18:50:00Z --projection cubemap --size 3072x512 --no-sun-disc \
+  -o "$work/sky_box.exr"
+cp "$here/sky_box.toml" "$work/sky_box.toml"
+picture sky_box "$work/sky_box.toml" --size 960x540
 "$here/noise.sh" "$program"

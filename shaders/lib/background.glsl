@@ -13,6 +13,13 @@ uniform float uSunRadius;         // rad
 uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
+#ifdef WELKIN_SKY_BOX
+uniform samplerCube uSkyBox;      // in the place of the clear sky
+uniform mat3 uBoxFromEnu;
+uniform float uBoxScale;          // cd/m2 for each unit of it
+uniform float uBoxTexelsPerRad;   // in the middle of a face
+uniform float uBoxGround;         // 1: the ground below the horizon, else the box
+#endif
 
 float groundDistance(vec3 dir) {
   float b = (uEarthRadiusM + uEyeM) * dir.z;
@@ -82,6 +89,10 @@ vec3 skyLuminance(vec3 dir) {
 }
 
 vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad) {
+#ifdef WELKIN_SKY_BOX
+  if (groundM >= 1e8 || uBoxGround < 0.5)
+    return uBoxScale * textureLod(uSkyBox, uBoxFromEnu * dir, log2(max(uBoxTexelsPerRad * pixelRad, 1.0))).xyz;
+#endif
   if (groundM < 1e8) return groundThroughAir(dir, groundM);
   vec3 sky = skyLuminance(dir);
   if (uDiscs > 0.5) {

@@ -13,6 +13,7 @@ struct Sheet {
   float heightM;      // above the ground
   float thicknessM;   // over which its depth is spread, for light that crosses it aslant
   float typicalDepth; // optical depth that its mean light is taken for
+  vec3 tint;          // share of light that its cloud scatters
 };
 
 WELKIN_FN vec3 sheetCoordinate(Sheet sheet, vec3 p) { return sheet.offset + p * sheet.perM; }

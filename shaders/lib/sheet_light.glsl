@@ -5,10 +5,13 @@
 // between the direction of view and the key light; viewHeight, sunHeight: sines of their elevations.
 // Needs lib/phase.glsl, lib/cloud_light.glsl and lib/sheet.glsl before it.
 
-// Of light from above and below, what arrives in the middle of the sheet.
+// The key light as its cloud scatters it.
+vec3 sheetKey(Sheet sheet, vec3 key) { return sheet.tint * key; }
+
+// Of light from above and below, what arrives in the middle of the sheet and is scattered.
 vec3 sheetAround(Sheet sheet, vec3 sky, vec3 ground) {
   vec2 shares = cloudSkyShares(CloudDepths(0.0, 0.0, 0.5 * sheet.typicalDepth, 0.5 * sheet.typicalDepth));
-  return sky * shares.x + ground * shares.y;
+  return sheet.tint * (sky * shares.x + ground * shares.y);
 }
 
 // Luminance of typical cloud of the sheet, on its side towards the sun or away from it, for the flat and embossed tiers.

@@ -50,7 +50,7 @@ SheetHit meetSheet(int i, int kind, bool far, vec3 dir, float endM, float pixelR
 // Luminance of cloud there. texel: of the pattern; way: of the pattern on the way to the sun, for the lit tier; through: the share of the
 // key light that volumes before it let through.
 vec3 sheetLuminance(int i, int tier, SheetHit hit, vec4 texel, vec3 way, float through, float phase, float cosSun, float viewHeight) {
-  vec3 key = uSheetRay[i].z * through * keyLightAt(uSheets[i].heightM, hit.p);
+  vec3 key = uSheetRay[i].z * through * sheetKey(uSheets[i], keyLightAt(uSheets[i].heightM, hit.p));
   vec3 around = sheetAround(uSheets[i], vec3(uSheetSky[i]), uGroundLight);
   float sunHeight = uKeyDirection.z;
   if (tier == 2) {

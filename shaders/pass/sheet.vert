@@ -48,7 +48,7 @@ void main() {
   through *= uScale;
 
   vec3 around = sheetAround(uSheet, uSkyOnSheet, uGroundLight) * through;
-  vec3 key = uSunOnSheet * keyLightAt(uSheet.heightM, iPositionM) * through;
+  vec3 key = uSunOnSheet * sheetKey(uSheet, keyLightAt(uSheet.heightM, iPositionM)) * through;
 #if WELKIN_TIER == 2
   vInscatter = inscatter;
   vKey = key;

@@ -99,7 +99,7 @@ std::map<std::string, std::string> ForeignEngine::state() const {
   ask("pack alignment", GL_PACK_ALIGNMENT, 1);
   ask("active texture", GL_ACTIVE_TEXTURE, 1);
   for (const GLenum name : {GL_SCISSOR_TEST, GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE,
-                            GL_COLOR_LOGIC_OP, GL_FRAMEBUFFER_SRGB})
+                            GL_COLOR_LOGIC_OP, GL_FRAMEBUFFER_SRGB, GL_TEXTURE_CUBE_MAP_SEAMLESS})
     state["switch " + std::to_string(name)] = glIsEnabled(name) ? "on" : "off";
   GLint active = 0;
   glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
@@ -108,6 +108,7 @@ std::map<std::string, std::string> ForeignEngine::state() const {
     const std::string unit = "unit " + std::to_string(i);
     ask((unit + " 2D").c_str(), GL_TEXTURE_BINDING_2D, 1);
     ask((unit + " 3D").c_str(), GL_TEXTURE_BINDING_3D, 1);
+    ask((unit + " cube").c_str(), GL_TEXTURE_BINDING_CUBE_MAP, 1);
     ask((unit + " sampler").c_str(), GL_SAMPLER_BINDING, 1);
   }
   glActiveTexture(static_cast<GLenum>(active));

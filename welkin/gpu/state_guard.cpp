@@ -52,10 +52,13 @@ StateGuard::StateGuard() {
     enabled_[i] = glIsEnabled(kSwitches[i]);
     glDisable(kSwitches[i]);
   }
+  seamless_ = glIsEnabled(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   activeTexture_ = integer(GL_ACTIVE_TEXTURE);
   for (int i = 0; i < kUnits; ++i) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-    units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_3D), integer(GL_SAMPLER_BINDING)};
+    units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_3D),
+                 integer(GL_TEXTURE_BINDING_CUBE_MAP), integer(GL_SAMPLER_BINDING)};
     glBindSampler(static_cast<GLuint>(i), 0);
   }
 
@@ -72,9 +75,11 @@ StateGuard::~StateGuard() {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
     glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(unit.texture2D));
     glBindTexture(GL_TEXTURE_3D, static_cast<GLuint>(unit.texture3D));
+    glBindTexture(GL_TEXTURE_CUBE_MAP, static_cast<GLuint>(unit.textureCube));
     glBindSampler(static_cast<GLuint>(i), static_cast<GLuint>(unit.sampler));
   }
   glActiveTexture(static_cast<GLenum>(activeTexture_));
+  enable(GL_TEXTURE_CUBE_MAP_SEAMLESS, seamless_);
   for (std::size_t i = 0; i < std::size(kSwitches); ++i) enable(kSwitches[i], enabled_[i]);
   glColorMask(colourMask_[0], colourMask_[1], colourMask_[2], colourMask_[3]);
   glDepthMask(depthMask_);

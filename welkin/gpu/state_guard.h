@@ -6,10 +6,11 @@
 
 namespace welkin::gpu {
 
-// While it lives the context is in the state that this folder's draws expect, that of a fresh context. When
-// it goes, everything that these draws change is as it was: program, vertex array, buffers, framebuffers,
-// viewport, scissor, blending, depth, stencil, culling, colour mask, texture units 0 to 15 with their
-// samplers, pixel storage. The context must stay current. Allocates nothing.
+// While it lives the context is in the state that this folder's draws expect, that of a fresh context but for
+// cube maps, which are filtered across their edges. When it goes, everything that these draws change is as it
+// was: program, vertex array, buffers, framebuffers, viewport, scissor, blending, depth, stencil, culling,
+// colour mask, texture units 0 to 15 with their samplers, pixel storage. The context must stay current.
+// Allocates nothing.
 class StateGuard {
  public:
   StateGuard();
@@ -20,14 +21,14 @@ class StateGuard {
  private:
   static constexpr int kUnits = 16;
   struct Unit {
-    int texture2D, texture3D, sampler;
+    int texture2D, texture3D, textureCube, sampler;
   };
   int program_, vertexArray_, arrayBuffer_, packBuffer_, unpackBuffer_, drawFramebuffer_, readFramebuffer_;
   int viewport_[4], scissor_[4];
   int blendSource_[2], blendTarget_[2], blendEquation_[2];  // colour, alpha
   int packAlignment_, unpackAlignment_, unpackRowLength_, activeTexture_, polygonMode_;
   unsigned char colourMask_[4], depthMask_;
-  bool enabled_[8];
+  bool enabled_[8], seamless_;
   Unit units_[kUnits];
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "welkin/core/error.h"
@@ -13,6 +14,13 @@ namespace {
 
 GLint glWrap(Wrap wrap) {
   return wrap == Wrap::kRepeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+}
+
+void setAnisotropy(GLenum target, float wanted) {
+  if (!epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) return;
+  GLfloat most = 1.0f;
+  glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
+  glTexParameterf(target, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(wanted, most));
 }
 
 int levelCount(int width, int height, int depth) {
@@ -36,11 +44,23 @@ int channelsOf(Format format) {
   }
 }
 
+float affordableAnisotropy(float wanted) {
+  // llvmpipe walks along the footprint texel by texel, each with a filter of its own.
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string_view name = renderer ? renderer : "";
+  const bool software = name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos ||
+                        name.find("SwiftShader") != name.npos;
+  return software ? 1.0f : wanted;
+}
+
 Texture::Texture(unsigned target, int width, int height, int depth, const TextureOptions& options)
     : target_(target), width_(width), height_(height), depth_(depth), options_(options) {
-  const bool volume = target == GL_TEXTURE_3D;
+  const bool volume = target == GL_TEXTURE_3D, cube = target == GL_TEXTURE_CUBE_MAP;
   GLint largest = 0;
-  glGetIntegerv(volume ? GL_MAX_3D_TEXTURE_SIZE : GL_MAX_TEXTURE_SIZE, &largest);
+  glGetIntegerv(volume ? GL_MAX_3D_TEXTURE_SIZE
+                : cube ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
+                       : GL_MAX_TEXTURE_SIZE,
+                &largest);
   if (std::min({width, height, depth}) < 1 || std::max({width, height, depth}) > largest)
     throw GpuError("a texture of " + std::to_string(width) + " x " + std::to_string(height) +
                    (volume ? " x " + std::to_string(depth) : "") +
@@ -57,6 +77,7 @@ Texture::Texture(unsigned target, int width, int height, int depth, const Textur
   glTexParameteri(target, GL_TEXTURE_WRAP_S, glWrap(options.wrapX));
   glTexParameteri(target, GL_TEXTURE_WRAP_T, glWrap(options.wrapY));
   if (volume) glTexParameteri(target, GL_TEXTURE_WRAP_R, glWrap(options.wrapZ));
+  if (mipmap && options.anisotropy > 1.0f) setAnisotropy(target, options.anisotropy);
 
   // glTexStorage is GL 4.2; level by level works everywhere.
   const int levels = mipmap ? levelCount(width, height, depth) : 1;
@@ -70,6 +91,9 @@ Texture::Texture(unsigned target, int width, int height, int depth, const Textur
               d = std::max(depth >> level, 1);
     if (volume)
       glTexImage3D(target, level, format, w, h, d, 0, client, type, nullptr);
+    else if (cube)
+      for (GLenum face = 0; face < 6; ++face)
+        glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, level, format, w, h, 0, client, type, nullptr);
     else
       glTexImage2D(target, level, format, w, h, 0, client, type, nullptr);
   }
@@ -105,7 +129,7 @@ void Texture::makeMipmaps() {
   glGenerateMipmap(target_);
 }
 
-void Texture::uploadValues(std::span<const float> values, int channels) {
+void Texture::uploadValues(std::span<const float> values, int channels, int face) {
   assert(values.size() == static_cast<std::size_t>(width_) * height_ * depth_ * channels);
   glBindTexture(target_, id_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -113,7 +137,9 @@ void Texture::uploadValues(std::span<const float> values, int channels) {
     glTexSubImage3D(target_, 0, 0, 0, 0, width_, height_, depth_, clientFormat(channels), GL_FLOAT,
                     values.data());
   else
-    glTexSubImage2D(target_, 0, 0, 0, width_, height_, clientFormat(channels), GL_FLOAT, values.data());
+    glTexSubImage2D(
+        target_ == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face) : target_,
+        0, 0, 0, width_, height_, clientFormat(channels), GL_FLOAT, values.data());
 }
 
 void Texture::readValues(std::span<float> values, int channels) const {
@@ -161,6 +187,16 @@ Volume<float> Texture3D::read() const {
   Volume<float> volume(width(), height(), depth(), channelsOf(options().format));
   readValues(volume.data, volume.channels);
   return volume;
+}
+
+TextureCube::TextureCube(const std::array<Image<float>, 6>& faces, const TextureOptions& options)
+    : Texture(GL_TEXTURE_CUBE_MAP, faces[0].width, faces[0].height, 1, options) {
+  for (int f = 0; f < 6; ++f) {
+    const Image<float>& face = faces[static_cast<std::size_t>(f)];
+    assert(face.width == width() && face.height == width() && face.channels == faces[0].channels);
+    uploadValues(face.data, face.channels, f);
+  }
+  makeMipmaps();
 }
 
 }  // namespace welkin::gpu

@@ -7,6 +7,7 @@
 // which turns it over.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "welkin/core/image.h"
@@ -27,9 +28,16 @@ struct TextureOptions {
   Format format = Format::kRgba16F;
   Filter filter = Filter::kLinear;
   Wrap wrapX = Wrap::kClamp, wrapY = Wrap::kClamp, wrapZ = Wrap::kClamp;  // wrapZ: volumes only
+  // Texels along the longer side of a pixel's footprint, with kMipmap; 1 where the driver lacks
+  // EXT_texture_filter_anisotropic, and never more than it does.
+  float anisotropy = 1.0f;
 };
 
-// What both kinds share. Movable; not copyable.
+// The anisotropy that drawing in the current context can afford: `wanted` on a graphics card, 1 on software
+// rasterisers.
+float affordableAnisotropy(float wanted);
+
+// What all kinds share. Movable; not copyable.
 class Texture {
  public:
   Texture(const Texture&) = delete;
@@ -38,7 +46,7 @@ class Texture {
   Texture& operator=(Texture&& other) noexcept;
 
   unsigned id() const { return id_; }          // the GL name
-  unsigned target() const { return target_; }  // GL_TEXTURE_2D or GL_TEXTURE_3D
+  unsigned target() const { return target_; }  // GL_TEXTURE_2D, _3D or _CUBE_MAP
   const TextureOptions& options() const { return options_; }
   int width() const { return width_; }
   int height() const { return height_; }
@@ -52,7 +60,8 @@ class Texture {
   Texture(unsigned target, int width, int height, int depth, const TextureOptions& options);
   ~Texture();
   // width * height * depth * channels values, 1 to 4 channels; the driver converts to the texture's format.
-  void uploadValues(std::span<const float> values, int channels);
+  // face: of a cube.
+  void uploadValues(std::span<const float> values, int channels, int face = 0);
   void readValues(std::span<float> values, int channels) const;
 
  private:
@@ -82,6 +91,14 @@ class Texture3D : public Texture {
 
   void upload(const Volume<float>& volume);
   Volume<float> read() const;
+};
+
+// Six square faces +x -x +y -y +z -z. Filtered across its edges inside a StateGuard.
+class TextureCube : public Texture {
+ public:
+  TextureCube() = default;
+  // All of one size, square, with the same number of channels; first row first, as OpenGL orients faces.
+  TextureCube(const std::array<Image<float>, 6>& faces, const TextureOptions& options);
 };
 
 }  // namespace welkin::gpu

@@ -13,6 +13,7 @@
 #include "welkin/render/octaves_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
+#include "welkin/render/sky_box_texture.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
 #include "welkin/shading/backdrop_tiles.h"
@@ -29,11 +30,11 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
-gpu::Program backdropProgram(shading::BackdropKind kind) {
-  return fullscreenProgram(
-      "pass/backdrop.frag",
-      shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""},
-                             {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}});
+gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox = false) {
+  shading::ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", ""},
+                                 {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}};
+  if (overSkyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  return fullscreenProgram("pass/backdrop.frag", defines);
 }
 
 }  // namespace
@@ -45,15 +46,18 @@ struct LiveSky::Impl {
   std::array<gpu::Program, 3> backdrops = {backdropProgram(shading::BackdropKind::kAll),
                                            backdropProgram(shading::BackdropKind::kSky),
                                            backdropProgram(shading::BackdropKind::kGround)};
+  gpu::Program boxBackdrop;  // once there is a box: in the place of all of them
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
 
   std::optional<scene::SkyState> state;
   std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
+  std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
 
   void update(const scene::SkyState& next);
+  void updateBox(const scene::SkyBox& wanted);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
@@ -92,6 +96,7 @@ void LiveSky::update(const scene::SkyState& state) {
 
 void LiveSky::Impl::update(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
+  if (!same) updateBox(next.scene.skyBox);  // first, as its files may be missing
   state = next;
   if (!same) {
     sheets.clear();
@@ -108,12 +113,23 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
       clouds.emplace(state->clouds->sharedNoise());
   }
   for (ThinLayer& sheet : sheets)
+    sheet.matter = shading::matterAt(sheet.sheet, sheet.described, state->secondsAfter);
+  for (ThinLayer& sheet : sheets)
     if (sheet.living) octavesPass.compose(*sheet.living, state->secondsAfter, sheet.flat);
   updateAmbient();
   tables.updateLive(*state);
   const shading::Uniforms sky = shading::skyUniforms(*state);
   sheetPass.setSky(sky);
   for (gpu::Program& p : backdrops) setUniforms(p, sky);
+  if (box) setUniforms(boxBackdrop, sky);
+}
+
+void LiveSky::Impl::updateBox(const scene::SkyBox& wanted) {
+  if (box && box->box() == wanted) return;
+  box.reset();
+  if (wanted.empty()) return;
+  box.emplace(wanted);
+  if (boxBackdrop.id() == 0) boxBackdrop = backdropProgram(shading::BackdropKind::kAll, true);
 }
 
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
@@ -129,6 +145,12 @@ void LiveSky::Impl::updateAmbient() {
 }
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
+  if (box) {
+    setBackdrop(boxBackdrop, view, target, scale);
+    box->bind(boxBackdrop);
+    triangle.draw(boxBackdrop, target);
+    return;
+  }
   const sky::Body &sun = state->ephemeris.sun, &moon = state->ephemeris.moon;
   const shading::BackdropTiles tiles = shading::backdropTiles(
       view, target.area.width, target.area.height, state->clouds->earthRadiusM(),

@@ -26,8 +26,9 @@ const SheetUniformNames kSheet = sheetUniformNames("uSheet");
 }  // namespace
 
 SheetUniformNames sheetUniformNames(const std::string& name) {
-  return {name + ".offset", name + ".perM",    name + ".threshold",  name + ".steepness",
-          name + ".bias",   name + ".heightM", name + ".thicknessM", name + ".typicalDepth"};
+  return {name + ".offset",     name + ".perM",         name + ".threshold",
+          name + ".steepness",  name + ".bias",         name + ".heightM",
+          name + ".thicknessM", name + ".typicalDepth", name + ".tint"};
 }
 
 void setSheet(gpu::Program& program, const SheetUniformNames& names, const shading::SheetLook& look) {
@@ -39,6 +40,7 @@ void setSheet(gpu::Program& program, const SheetUniformNames& names, const shadi
   program.set(names[5], look.heightM);
   program.set(names[6], look.thicknessM);
   program.set(names[7], look.typicalDepth);
+  program.set(names[8], look.tint);
 }
 
 SheetPass::SheetPass() {

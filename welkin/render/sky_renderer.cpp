@@ -17,6 +17,7 @@
 #include "welkin/render/flare_pass.h"
 #include "welkin/render/light_volume_pass.h"
 #include "welkin/render/programs.h"
+#include "welkin/render/sky_box_texture.h"
 #include "welkin/render/sky_sheets.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/lens_flare.h"
@@ -60,9 +61,11 @@ struct SkyRenderer::Impl {
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
   SkySheets sheets;
+  std::optional<SkyBoxTexture> box;  // in the place of the clear sky
   std::optional<FlarePass> flare;
   gpu::Texture2D sum;  // of sub-frames
 
+  void updateBox(const scene::SkyBox& wanted);
   Picture draw(const scene::SkyState& state, const Progress& progress);
   gpu::Program& programFor(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
                            const shading::MarchSettings& settings, bool transmittance);
@@ -92,11 +95,18 @@ std::vector<std::string> SkyRenderer::takeErrors() {
 
 Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
   impl_->context.makeCurrent();
+  impl_->updateBox(state.scene.skyBox);
   impl_->sheets.update(state);
   if (impl_->sheets.empty()) return impl_->draw(state, progress);
   scene::SkyState under = state;
   under.ambient = impl_->sheets.ambient();
   return impl_->draw(under, progress);
+}
+
+void SkyRenderer::Impl::updateBox(const scene::SkyBox& wanted) {
+  if (box && box->box() == wanted) return;
+  box.reset();
+  if (!wanted.empty()) box.emplace(wanted);
 }
 
 // transmittance: what arrives through all clouds, and not a picture.
@@ -107,6 +117,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   shading::ShaderDefines defines =
       sheets.empty() ? shading::marchDefines(layout, eyeM) : sheets.defines(layout, eyeM);
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
+  if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   gpu::Program& p = sky.with(defines);
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));
@@ -121,6 +132,7 @@ void SkyRenderer::Impl::bind(gpu::Program& p) {
   tables.bind(p);
   p.bind("uLightVolume", lightVolume.volume());
   sheets.bind(p);
+  if (box) box->bind(p);
 }
 
 Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& progress) {

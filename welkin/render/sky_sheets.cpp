@@ -26,6 +26,7 @@ void SkySheets::update(const scene::SkyState& state) {
     scene_ = state.scene;
   }
   for (ThinLayer& layer : layers_) {
+    layer.matter = shading::matterAt(layer.sheet, layer.described, state.secondsAfter);
     if (!layer.living) continue;
     if (!octaves_) octaves_.emplace();
     octaves_->compose(*layer.living, state.secondsAfter, layer.flat);

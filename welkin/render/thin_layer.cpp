@@ -5,9 +5,17 @@
 #include <array>
 #include <utility>
 
+#include "welkin/scene/sheet_texture.h"
 #include "welkin/shading/sheet_mesh.h"
 
 namespace welkin::render {
+
+namespace {
+
+// Towards the horizon a pixel's footprint on a sheet is long and narrow.
+constexpr float kAnisotropy = 8.0f;
+
+}  // namespace
 
 ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double earthRadiusM) {
   constexpr gpu::TextureOptions kTiling{.format = gpu::Format::kR16F,
@@ -20,20 +28,24 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
   const bool slopes = sheet.tier == scene::SheetTier::kEmbossed;
   gpu::TextureOptions options = kTiling;
   if (slopes) options.format = gpu::Format::kRgba16F;
-  if (sheet.surface == scene::SheetSurface::kDome) {
-    const Volume<float> pattern = scene::domePattern(sheet, seed);
-    layer.matter = shading::matterOf(sheet, pattern.data, seed);
-    layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern) : pattern, options);
-    layer.volume.makeMipmaps();
-  } else if (sheet.pattern == scene::SheetPattern::kOctaves) {
+  scene::PatternTexels pattern;
+  if (sheet.pattern == scene::SheetPattern::kOctaves) {
     const int n = static_cast<int>(sheet.texels);
     layer.living.emplace(sheet, seed);
-    layer.matter = shading::matterOf(sheet, layer.living->pattern().samples(), seed);
     layer.flat = gpu::Texture2D(n, n, options);  // composed at every instant
   } else {
-    const Image<float> pattern = scene::flatPattern(sheet, seed);
-    layer.matter = shading::matterOf(sheet, pattern.data, seed);
-    layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern) : pattern, options);
+    pattern = scene::patternOf(sheet, seed);
+  }
+  layer.described = layer.matter =
+      shading::matterOf(sheet, layer.living ? layer.living->pattern().samples() : pattern.values(), seed);
+  if (sheet.surface == scene::SheetSurface::kDome) {
+    layer.sheet.texels = pattern.volume.nx;
+    layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern.volume) : pattern.volume, options);
+    layer.volume.makeMipmaps();
+  } else if (!layer.living) {
+    layer.sheet.texels = pattern.flat.width;
+    options.anisotropy = gpu::affordableAnisotropy(kAnisotropy);
+    layer.flat = gpu::Texture2D(slopes ? shading::withSlopes(pattern.flat) : pattern.flat, options);
     layer.flat.makeMipmaps();
   }
   const shading::SheetMesh mesh = shading::meshOf(sheet, earthRadiusM);

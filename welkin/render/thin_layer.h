@@ -17,7 +17,7 @@ namespace welkin::render {
 
 struct ThinLayer {
   scene::Sheet sheet;
-  shading::SheetMatter matter;
+  shading::SheetMatter described, matter;  // at the scene's time, and at the instant
   shading::LightOnSheet light;
   float sunThrough = 1.0f;  // mean share of the key light
   gpu::Mesh mesh;

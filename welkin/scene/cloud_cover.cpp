@@ -102,6 +102,13 @@ std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weat
     field::CloudLayer shape = shapeOf(weather.layers[i], calibration[i].seed, secondsAfter);
     shape.threshold = calibration[i].threshold;
     shape.extinction = calibration[i].extinction;
+    if (scene.drift.windDeg != 0.0) {
+      // Where the turning wind has taken it, less where the wind as described would have.
+      const weather::Layer& layer = weather.layers[i];
+      const glm::dvec2 wandered = windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter) -
+                                  windPath({}, 0, layer.windFromDeg, secondsAfter);
+      shape.driftM += glm::vec2(layer.windSpeedMps * wandered);
+    }
     shapes.push_back(shape);
   }
   return std::make_shared<field::CloudField>(std::move(noise), std::move(shapes), scene.place.altitudeM);
@@ -112,7 +119,7 @@ DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
   DeliveredCover cover;
   const std::vector<Sheet> sheets = sheetsOf(scene, weather);
   std::vector<float> together(kReportView.directions);
-  double clear = 1.0;  // the share of the sky that sheets leave
+  double clear = 1.0, clearAsked = 1.0;  // shares of the sky that clouds leave
   std::size_t sheet = 0;
   const auto addSheet = [&] {
     const double share = deliveredCover(sheets[sheet], sheetSeed(scene, sheet), secondsAfter);
@@ -120,26 +127,35 @@ DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
     clear *= 1.0 - share;
     return kOktas * share;
   };
+  // What is asked of the sheet that comes next, as its cover drifts.
+  const auto askedOf = [&](double oktas) {
+    return oktasAt(scene.drift, sheets[sheet].drift.coverSeed, oktas, secondsAfter);
+  };
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     const weather::Layer& layer = weather.layers[i];
     if (isSheet(scene, layer)) {
-      cover.layers.push_back({layer.oktas, addSheet()});
+      const double asked = askedOf(layer.oktas);
+      cover.layers.push_back({asked, addSheet()});
+      clearAsked *= 1.0 - asked / kOktas;
       continue;
     }
+    clearAsked *= 1.0 - layer.oktas / kOktas;
     const std::vector<float> depths = field::layerOpticalDepths(clouds, kReportView, static_cast<int>(i));
     cover.layers.push_back({layer.oktas, kOktas * field::coverOf(depths)});
     together = sumOf(together, depths);
   }
-  double clearAsked = 1.0 - weather.requestedOktas / kOktas;
+  // As the weather has it, unless drift has changed its layers since.
+  if (scene.drift.coverOktas == 0.0 || sheets.empty()) clearAsked = 1.0 - weather.requestedOktas / kOktas;
   while (sheet < sheets.size()) {
-    const std::optional<double> asked = sheets[sheet].oktas;
+    std::optional<double> asked = sheets[sheet].oktas;
+    if (asked) asked = askedOf(*asked);
     const double delivered = addSheet();
     cover.sheets.push_back({asked.value_or(delivered), delivered});
     clearAsked *= 1.0 - cover.sheets.back().requestedOktas / kOktas;
   }
   clear *= 1.0 - field::coverOf(together);
   // The weather's own number stays as it is, to the last bit, where there is nothing beside it.
-  cover.sky = {cover.sheets.empty() ? weather.requestedOktas : kOktas * (1.0 - clearAsked),
+  cover.sky = {sheets.empty() ? weather.requestedOktas : kOktas * (1.0 - clearAsked),
                sheets.empty() ? kOktas * field::coverOf(together) : kOktas * (1.0 - clear)};
   return cover;
 }

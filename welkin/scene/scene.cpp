@@ -86,6 +86,10 @@ void describe(Scene& s, ParamVisitor& v) {
             "with living octaves"},
            s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
+  v.value({"theme", "",
+           "what technique, tier, drift and sheets start from: thesis-overcast, thesis-broken, thesis-few, "
+           "thesis-combined, thesis-dome, realistic-skies, or a theme's file beside the scene file"},
+          s.theme);
   v.group({"place", "", "where on earth the eye stands"}, s.place);
   v.group({"camera", "", "where the eye is and what it sees"}, s.camera);
   v.group({"output", "", "the picture"}, s.output);
@@ -93,6 +97,8 @@ void describe(Scene& s, ParamVisitor& v) {
   v.group({"atmosphere", "", "what the clear air is made of"}, s.atmosphere);
   v.group({"octaves", "", "the patterns of layers with technique octaves, which change as clouds do"},
           s.octaves);
+  v.group({"drift", "", "wind and cover that wander by themselves"}, s.drift);
+  v.group({"sky_box", "", "pictures all around in the place of the clear sky"}, s.skyBox);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
   v.list({"sheet", "",
           "a thin layer of cloud by hand, drawn beside those of the weather, volumes and sheets alike"},
@@ -117,6 +123,7 @@ void validate(const Scene& s) {
     throw ParameterError("there are " + std::to_string(s.sheets.size()) + " sheets; expected at most " +
                          std::to_string(kMaxSheets));
   for (const Sheet& sheet : s.sheets) validate(sheet);
+  validate(s.skyBox);
   if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)
     throw ParameterError("output.flare is a lens's; expected projection perspective");
 }
@@ -147,7 +154,14 @@ std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather)
     if (technique == Technique::kOctaves) sheets.back() = withLivingOctaves(sheets.back(), scene.octaves);
   }
   sheets.insert(sheets.end(), scene.sheets.begin(), scene.sheets.end());
+  if (scene.drift != Drift{})
+    for (std::size_t i = 0; i < sheets.size(); ++i)
+      sheets[i].drift = {scene.drift, windSeed(scene), hashOf(sheetSeed(scene, i), 0xc0e4)};
   return sheets;
+}
+
+std::uint64_t windSeed(const Scene& scene) {
+  return hashOf(static_cast<std::uint64_t>(scene.seed), 0x714d);
 }
 
 std::uint64_t sheetSeed(const Scene& scene, std::size_t index) {

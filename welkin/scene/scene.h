@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "welkin/core/params.h"
+#include "welkin/scene/drift.h"
 #include "welkin/scene/sheet.h"
+#include "welkin/scene/sky_box.h"
 #include "welkin/sky/atmosphere_params.h"
 #include "welkin/weather/weather.h"
 
@@ -73,8 +75,12 @@ struct Scene {
   std::vector<weather::Layer> layers;      // the weather by hand
   Technique technique = Technique::kAuto;  // of layers that name none
   SheetTier tier = SheetTier::kLit;        // of layers that are drawn as sheets
-  LayerOctaves octaves;                    // of layers with the technique octaves
-  std::vector<Sheet> sheets;               // thin layers by hand, beside the weather's
+  std::optional<std::string> theme;  // in scene files: what technique, tier, drift and sheets start from;
+                                     // empty once it is read (theme.h)
+  LayerOctaves octaves;              // of layers with the technique octaves
+  std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
+  Drift drift;                       // of wind and cover
+  SkyBox skyBox;                     // in the place of the clear sky
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
@@ -91,8 +97,11 @@ void validate(const Scene& s);
 Technique techniqueOf(const Scene& scene, const weather::Layer& layer);
 bool drawsSheets(Technique technique);
 bool isSheet(const Scene& scene, const weather::Layer& layer);  // drawn as one
-// The sheets of a scene: the layers of the weather that are drawn so, then those by hand.
+// The sheets of a scene: the layers of the weather that are drawn so, then those by hand. Each with
+// its share of the scene's drift.
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);
+// How the wind of all layers turns.
+std::uint64_t windSeed(const Scene& scene);
 // Of the pattern of the sheet with this index among them.
 std::uint64_t sheetSeed(const Scene& scene, std::size_t index);
 

@@ -2,11 +2,14 @@
 #include "welkin/scene/scene_file.h"
 
 #include <algorithm>
-#include <sstream>
+#include <filesystem>
+#include <initializer_list>
 
 #include "welkin/core/error.h"
-#include "welkin/scene/param_text.h"
+#include "welkin/scene/sheet_reader.h"
+#include "welkin/scene/theme.h"
 #include "welkin/scene/toml_reader.h"
+#include "welkin/scene/toml_writer.h"
 
 namespace welkin::scene {
 namespace {
@@ -34,51 +37,22 @@ std::vector<weather::Layer> typicalLayers(const toml::table& root, double latitu
   return layers;
 }
 
-class TomlWriter final : public ParamVisitor {
- public:
-  std::ostringstream out;
-
-  void value(const ParamInfo& info, bool& x) override { line(info, x ? "true" : "false"); }
-  void value(const ParamInfo& info, std::int64_t& x) override { line(info, std::to_string(x)); }
-  void value(const ParamInfo& info, double& x) override { line(info, numberText(x)); }
-  void value(const ParamInfo& info, glm::dvec3& x) override {
-    line(info, "[" + numberText(x.x) + ", " + numberText(x.y) + ", " + numberText(x.z) + "]");
+// The theme that the file names, or that wins over it.
+std::optional<Theme> themeIn(const toml::table& root, const std::string& name,
+                             const std::optional<std::string>& wins) {
+  if (wins) return readTheme(*wins);
+  const toml::node* node = root.get("theme");
+  const auto theme = node ? node->value<std::string>() : std::nullopt;
+  if (!theme) return std::nullopt;
+  try {
+    return readTheme(std::find(kThemeNames.begin(), kThemeNames.end(), *theme) == kThemeNames.end()
+                         ? besideFile(name, *theme)
+                         : *theme);
+  } catch (const ParameterError& e) {
+    throw ParseError(name, static_cast<int>(node->source().begin.line),
+                     static_cast<int>(node->source().begin.column), e.what());
   }
-  void value(const ParamInfo& info, std::string& x) override { line(info, quoted(x)); }
-  void value(const ParamInfo& info, UtcTime& x) override { line(info, formatUtcTime(x)); }
-  void value(const ParamInfo& info, std::optional<double>& x) override {
-    if (x) line(info, numberText(*x));
-  }
-  void value(const ParamInfo& info, std::optional<std::string>& x) override {
-    if (x) line(info, quoted(*x));
-  }
-  void choice(const ParamInfo& info, std::span<const std::string_view> names, int& x) override {
-    line(info, quoted(std::string(names[static_cast<std::size_t>(x)])));
-  }
-
- protected:
-  bool beginGroup(const ParamInfo& info) override {
-    out << "\n[" << info.key << "]\n";
-    return true;
-  }
-  void endGroup() override {}
-  std::size_t beginList(const ParamInfo& info, std::size_t size) override {
-    list_ = info.key;
-    return size;
-  }
-  void beginElement(std::size_t) override { out << "\n[[" << list_ << "]]\n"; }
-  void endElement() override {}
-  void endList() override {}
-
- private:
-  void line(const ParamInfo& info, const std::string& text) { out << info.key << " = " << text << '\n'; }
-  static std::string quoted(const std::string& text) {
-    std::ostringstream s;
-    s << toml::value<std::string>(text);
-    return s.str();
-  }
-  std::string list_;
-};
+}
 
 }  // namespace
 
@@ -86,20 +60,33 @@ bool SceneFile::gives(std::string_view path) const {
   return std::find(given.begin(), given.end(), path) != given.end();
 }
 
-SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg) {
+SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg,
+                     const std::optional<std::string>& theme) {
   const toml::table root = parseToml(text, name);
   SceneFile file;
+  Scene& scene = file.scene;
   if (!latitudeDeg) latitudeDeg = root["place"]["latitude_deg"].value<double>();
-  file.scene.layers = typicalLayers(root, latitudeDeg.value_or(file.scene.place.latitudeDeg));
+  scene.layers = typicalLayers(root, latitudeDeg.value_or(scene.place.latitudeDeg));
+  const std::optional<Theme> start = themeIn(root, name, theme);
+  if (start) apply(*start, scene);
+  scene.sheets = startingSheets(root, name);
   TomlReader reader(root, name, documentParams<Scene>());
-  describe(file.scene, reader);
+  describe(scene, reader);
   reader.finish();
   file.given = std::move(reader.given);
+
+  scene.theme.reset();
+  finishSheets(scene.sheets, name);
+  if (start) scene.sheets.insert(scene.sheets.begin(), start->sheets.begin(), start->sheets.end());
+  SkyBox& box = scene.skyBox;
+  for (auto* path : {&box.strip, &box.px, &box.nx, &box.py, &box.ny, &box.pz, &box.nz})
+    if (*path) *path = besideFile(name, **path);
   return file;
 }
 
-SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg) {
-  return parseScene(readText(path, "a scene file"), path, latitudeDeg);
+SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg,
+                        const std::optional<std::string>& theme) {
+  return parseScene(readText(path, "a scene file"), path, latitudeDeg, theme);
 }
 
 std::vector<ParamDoc> documentSceneFile() {
@@ -110,10 +97,7 @@ std::vector<ParamDoc> documentSceneFile() {
 }
 
 std::string sceneToToml(const Scene& scene) {
-  Scene copy = scene;  // visitors may write, this one does not
-  TomlWriter writer;
-  describe(copy, writer);
-  return writer.out.str();
+  return toToml(scene);
 }
 
 }  // namespace welkin::scene

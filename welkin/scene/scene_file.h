@@ -25,13 +25,18 @@ struct SceneFile {
 };
 
 // latitudeDeg: of the place when something else than the file decides it, for what is typical of a layer
-// there. Throws IoError when the file cannot be read; ParseError with file:line:column for bad TOML, an
-// unknown key (naming the nearest known one), a value of the wrong type and a value outside its range.
-// validate() is left to the caller.
-SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg = {});
+// there. theme: a name or path that wins over the file's `theme`. Throws IoError when the file cannot be
+// read; ParseError with file:line:column for bad TOML, an unknown key (naming the nearest known one), a value
+// of the wrong type and a value outside its range; what readTheme() throws. validate() is left to the caller.
+//
+// Presets and themes are replaced by what they stand for, and the paths of files, which are relative to the
+// scene file, by paths from here.
+SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg = {},
+                        const std::optional<std::string>& theme = {});
 
-// The same from memory; `name` stands for the file in messages.
-SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {});
+// The same from memory; `name` stands for the file in messages, and its folder for the file's.
+SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {},
+                     const std::optional<std::string>& theme = {});
 
 // Every key of a scene file, with what is taken when the file does not have it.
 std::vector<ParamDoc> documentSceneFile();

@@ -10,6 +10,8 @@
 #include "welkin/noise/noise.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/living_pattern.h"
+#include "welkin/scene/param_text.h"
+#include "welkin/scene/sheet_texture.h"
 
 namespace welkin::scene {
 namespace {
@@ -19,7 +21,7 @@ constexpr double kMaxDomeTexels = 256;
 // Optical depth from which on observers call it cloud.
 constexpr double kVisibleDepth = 0.3;
 
-noise::NoiseParams patternOf(const Sheet& sheet, std::uint64_t seed) {
+noise::NoiseParams noiseOf(const Sheet& sheet, std::uint64_t seed) {
   const bool volume = sheet.surface == SheetSurface::kDome;
   noise::NoiseParams p;
   p.dimensions = volume ? 3 : 2;
@@ -35,6 +37,9 @@ noise::NoiseParams patternOf(const Sheet& sheet, std::uint64_t seed) {
 }  // namespace
 
 void describe(Sheet& s, ParamVisitor& v) {
+  v.value({"preset", "",
+           "what the keys below start from: thesis-overcast, thesis-broken, thesis-few or thesis-dome"},
+          s.preset);
   v.choice({"surface", "",
             "plane: a flat square about the eye; skyplane: bent over the earth, to the horizon; dome: cuts "
             "through a volume of noise"},
@@ -44,7 +49,12 @@ void describe(Sheet& s, ParamVisitor& v) {
            s.tier);
   v.value({"height_m", "m", "height above the ground", 10, 25000}, s.heightM);
   v.value({"thickness_m", "m", "depth over which its optical depth is spread", 1, 10000}, s.thicknessM);
+  v.value({"texture", "",
+           "file of the pattern, beside the scene file: a picture, for a dome a volume; absent: it is "
+           "generated from the keys below"},
+          s.texture);
   v.value({"tile_m", "m", "after which the pattern repeats", 100, 500000}, s.tileM);
+  v.value({"offset", "", "of the pattern, tiles east, north and, in a dome, up", -1000, 1000}, s.offset);
   v.value({"texels", "", "of the pattern, a side; a dome has at most 256", 16, 4096}, s.texels);
   v.value({"frequency", "", "cells of the first octave in a tile", 1, 512}, s.frequency);
   v.value({"octaves", "", "of the pattern", 1, 16}, s.octaves);
@@ -52,11 +62,18 @@ void describe(Sheet& s, ParamVisitor& v) {
   v.value({"persistence", "", "amplitude of an octave over that of the one before", 0.01, 1}, s.persistence);
   v.value({"cutoff", "", "value of the pattern above which it is cloud", 0, 1}, s.cutoff);
   v.value({"oktas", "okta", "eighths of the sheet that are cloud; wins over cutoff", 0, 8}, s.oktas);
-  v.value(
-      {"density", "", "share of light that each of 255 levels of the pattern above the cutoff lets through",
-       0.01, 0.9999},
-      s.density);
+  v.value({"density", "",
+           "share of light that each of 255 levels of the pattern above the cutoff lets through; absent: "
+           "0.96, unless there is an exponent",
+           0.01, 0.9999},
+          s.density);
+  v.value({"exponent", "",
+           "the same of the whole range of the pattern, for density is its 255th root; not beside a density",
+           1e-100, 0.9999},
+          s.exponent);
   v.value({"bias", "", "the most that the sheet hides", 0, 1}, s.bias);
+  v.value({"colour", "", "tint of its cloud, linear Rec. 709 red, green, blue; what it hides stays", 0, 4},
+          s.colour);
   v.value({"wind_from_deg", "deg", "direction its wind comes from, clockwise from north", 0, 360},
           s.windFromDeg);
   v.value({"wind_speed_mps", "m/s", "speed of its wind", 0, 150}, s.windSpeedMps);
@@ -92,6 +109,8 @@ void validateLiving(const Sheet& s) {
 }  // namespace
 
 void validate(const Sheet& s) {
+  if (s.density && s.exponent)
+    throw ParameterError("density and exponent both say how fast a sheet thickens; expected one of them");
   if (s.surface == SheetSurface::kDome && s.texels > kMaxDomeTexels)
     throw ParameterError("a dome's pattern of " + std::to_string(s.texels) +
                          " texels a side is too large; expected at most " +
@@ -127,6 +146,13 @@ Sheet sheetOf(SheetPreset preset) {
       break;
   }
   return s;
+}
+
+SheetPreset sheetPreset(std::string_view name) {
+  const auto& names = kEnumNames<SheetPreset>;
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it == names.end()) throw ParameterError(choiceProblem({"preset", "", ""}, names, name));
+  return static_cast<SheetPreset>(it - names.begin());
 }
 
 Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
@@ -180,48 +206,94 @@ Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed) {
   const int n = static_cast<int>(sheet.texels);
   if (sheet.pattern == SheetPattern::kOctaves) return LivingPattern(sheet, seed).image(0.0, n);
   Image<float> pattern(n, n, 1);
-  noise::Noise(patternOf(sheet, seed)).fill(noise::Grid::tile({n, n, 1}), std::span(pattern.data));
+  noise::Noise(noiseOf(sheet, seed)).fill(noise::Grid::tile({n, n, 1}), std::span(pattern.data));
   return pattern;
 }
 
 Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed) {
   const int n = static_cast<int>(sheet.texels);
   Volume<float> pattern(n, n, n, 1);
-  noise::Noise(patternOf(sheet, seed)).fill(noise::Grid::tile({n, n, n}), std::span(pattern.data));
+  noise::Noise(noiseOf(sheet, seed)).fill(noise::Grid::tile({n, n, n}), std::span(pattern.data));
   return pattern;
 }
 
+namespace {
+
+// The least excess over the threshold that observers call cloud. Whoever asks for a sheet that hides less
+// than that gets what it has above the threshold.
+double visibleExcess(const field::Condensation& law) {
+  const double visible = -std::expm1(-kVisibleDepth);
+  return law.bias > visible ? law.excessOf(visible) : 0.0;
+}
+
+// The share of a pattern that exceeds a value.
+double shareAbove(const field::PatternQuantiles& pattern, double value) {
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (pattern.above(middle) > value ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
 field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern) {
-  field::Condensation law = field::thesisTexture(sheet.cutoff, sheet.density);
+  field::Condensation law = sheet.exponent
+                                ? field::thesisShader(sheet.cutoff, *sheet.exponent, 1.0)
+                                : field::thesisTexture(sheet.cutoff, sheet.density.value_or(Sheet::kDensity));
   law.bias = sheet.bias;
   if (!sheet.oktas) return law;
   if (*sheet.oktas <= 0.0) {
     law.threshold = 1.0;  // many texels may have the greatest value: not even they
     return law;
   }
-  const double visible = -std::expm1(-kVisibleDepth);
-  // Whoever asks for a sheet that hides less than a visible cloud gets what it has above the threshold.
-  return field::withCover(law, field::quantileAbove(pattern, *sheet.oktas / kOktas),
-                          law.bias > visible ? visible : 0.0);
+  law.threshold = field::quantileAbove(pattern, *sheet.oktas / kOktas) - visibleExcess(law);
+  return law;
+}
+
+field::Condensation lawAt(const Sheet& sheet, const field::Condensation& law,
+                          const field::PatternQuantiles& pattern, double secondsAfter) {
+  if (sheet.drift.drift.coverOktas == 0.0) return law;
+  // By differences of the table's values, so that the law is the described one where the drift is nought.
+  const double excess = visibleExcess(law);
+  const bool never = sheet.oktas && *sheet.oktas <= 0.0;
+  const double described = never ? 0.0 : shareAbove(pattern, law.threshold + excess);
+  const double oktas = oktasAt(sheet.drift.drift, sheet.drift.coverSeed, kOktas * described, secondsAfter);
+  if (never && oktas <= 0.0) return law;
+  field::Condensation now = law;
+  now.threshold = pattern.above(oktas / kOktas) - excess;
+  if (!never) now.threshold += law.threshold + excess - pattern.above(described);
+  return now;
+}
+
+glm::dvec2 windPathM(const Sheet& sheet, double secondsAfter) {
+  return sheet.windSpeedMps *
+         windPath(sheet.drift.drift, sheet.drift.windSeed, sheet.windFromDeg, secondsAfter);
 }
 
 double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter) {
-  const auto above = [](const field::Condensation& law, std::span<const float> pattern) {
-    // Rounded down, as the texel on the threshold itself counts.
-    const double least = law.threshold + (1.0 - 1e-6) * kVisibleDepth / law.k;
-    const auto count = std::count_if(pattern.begin(), pattern.end(), [&](float p) { return p >= least; });
-    return static_cast<double>(count) / static_cast<double>(pattern.size());
-  };
+  // The law goes by the described pattern; what is counted is the one of the instant.
+  std::vector<float> described, shown;
   if (sheet.pattern == SheetPattern::kOctaves) {
     const LivingPattern living(sheet, seed);
-    const Image<float> now = living.image(living.shown(secondsAfter), static_cast<int>(sheet.texels));
-    return above(condensationOf(sheet, living.samples()), now.data);
+    const std::span<const float> samples = living.samples();
+    described.assign(samples.begin(), samples.end());
+    shown = living.image(living.shown(secondsAfter), static_cast<int>(sheet.texels)).data;
+  } else {
+    const PatternTexels texels = patternOf(sheet, seed);
+    shown.assign(texels.values().begin(), texels.values().end());
   }
-  const auto visible = [&](std::span<const float> pattern) {
-    return above(condensationOf(sheet, pattern), pattern);
-  };
-  if (sheet.surface == SheetSurface::kDome) return visible(domePattern(sheet, seed).data);
-  return visible(flatPattern(sheet, seed).data);
+  const std::span<const float> values = described.empty() ? shown : described;
+  field::Condensation law = condensationOf(sheet, values);
+  if (sheet.drift.drift.coverOktas != 0.0)
+    law = lawAt(sheet, law, field::PatternQuantiles(values), secondsAfter);
+  const double excess = visibleExcess(law);
+  // Rounded down, as the texel that is just visible counts.
+  const double least = law.threshold + (1.0 - 1e-6) * excess;
+  const auto count = std::count_if(shown.begin(), shown.end(),
+                                   [&](float p) { return excess > 0.0 ? p >= least : p > least; });
+  return static_cast<double>(count) / static_cast<double>(shown.size());
 }
 
 }  // namespace welkin::scene

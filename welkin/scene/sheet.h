@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "welkin/core/image.h"
 #include "welkin/core/params.h"
 #include "welkin/field/condensation.h"
+#include "welkin/scene/drift.h"
 #include "welkin/scene/living_octaves.h"
 #include "welkin/weather/weather.h"
 
@@ -40,6 +42,7 @@ enum class SheetPattern {
 };
 
 struct Sheet {
+  std::optional<std::string> preset;  // in scene files: what the other keys start from; empty once it is read
   SheetSurface surface = SheetSurface::kSkyPlane;
   SheetTier tier = SheetTier::kLit;
   double heightM = 1400.0;     // above the ground
@@ -52,14 +55,21 @@ struct Sheet {
   double persistence = 0.5;
   double cutoff = 0.6;          // of the pattern in [0, 1]
   std::optional<double> oktas;  // wins over cutoff: the cutoff at which so much of the sky is hidden
-  double density = 0.96;  // a texture level lets this share of the light through that the one below it does
-  double bias = 1.0;      // the most that the sheet hides
+  // At most one of the two; neither: a density of kDensity. A level, or a unit, of the pattern lets this
+  // share of the light through that the one below it does.
+  std::optional<double> density, exponent;
+  double bias = 1.0;                   // the most that the sheet hides
+  glm::dvec3 colour{1.0};              // share of light that its cloud scatters, linear Rec. 709
+  glm::dvec3 offset{0.0};              // of the pattern, tiles east, north, up
+  std::optional<std::string> texture;  // file that the pattern is in (sheet_texture.h)
   double windFromDeg = 270.0;
   double windSpeedMps = 8.0;
   double riseMps = 0.0;  // of the pattern through a dome: how fast its clouds form and go
   SheetPattern pattern = SheetPattern::kNoise;
   LivingOctaves living;  // of the pattern octaves
+  SheetDrift drift;      // of the scene that it is in: sheetsOf() sets it
 
+  static constexpr double kDensity = 0.96;
   bool operator==(const Sheet&) const = default;
 };
 void describe(Sheet& s, ParamVisitor& v);
@@ -68,6 +78,8 @@ void validate(const Sheet& s);  // throws ParameterError
 // The thesis's layers over its textures of 1024 texels, and its dome of 128.
 enum class SheetPreset { kThesisOvercast, kThesisBroken, kThesisFew, kThesisDome };
 Sheet sheetOf(SheetPreset preset);
+// By its name in scene files. Throws ParameterError that names the nearest.
+SheetPreset sheetPreset(std::string_view name);
 
 // A layer of weather as a sheet on this surface: its height, cover, optical depth, wind, and cells as large
 // as its genus has them.
@@ -80,8 +92,8 @@ Sheet withLivingOctaves(Sheet sheet, const LayerOctaves& octaves);
 // octaves.
 std::int64_t cellsOf(const Sheet& sheet);
 
-// The pattern, in [0, 1]: texels x texels, or for a dome a volume of texels a side, one channel. Tiles.
-// `seed`: one pattern for each. Of living octaves: at the scene's time.
+// The generated pattern, in [0, 1]: texels x texels, or for a dome a volume of texels a side, one channel.
+// Tiles. `seed`: one pattern for each. Of living octaves: at the scene's time.
 Image<float> flatPattern(const Sheet& sheet, std::uint64_t seed);
 Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed);
 
@@ -89,7 +101,15 @@ Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed);
 // (of an optical depth of 0.3 or more, as observers count) where the sheet asks for that.
 field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern);
 
-// The share of the whole pattern that is cloud to an observer: what it covers of the sky, but for chance.
+// That law `secondsAfter` the scene's time, as its cover drifts; the law itself where it does not.
+field::Condensation lawAt(const Sheet& sheet, const field::Condensation& law,
+                          const field::PatternQuantiles& pattern, double secondsAfter);
+
+// Where the air of a sheet has gone to since the scene's time, east and north.
+glm::dvec2 windPathM(const Sheet& sheet, double secondsAfter);
+
+// The share of the whole pattern, its file's where it has one, that is cloud to an observer: what it covers
+// of the sky, but for chance.
 double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter = 0.0);
 
 }  // namespace welkin::scene
@@ -98,6 +118,9 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::SheetSurface> =
     std::array<std::string_view, 3>{"plane", "skyplane", "dome"};
+template <>
+inline constexpr auto kEnumNames<scene::SheetPreset> =
+    std::array<std::string_view, 4>{"thesis-overcast", "thesis-broken", "thesis-few", "thesis-dome"};
 template <>
 inline constexpr auto kEnumNames<scene::SheetTier> =
     std::array<std::string_view, 3>{"flat", "embossed", "lit"};

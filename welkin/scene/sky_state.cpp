@@ -9,6 +9,7 @@
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
+#include "welkin/scene/sheet_texture.h"
 #include "welkin/sky/light.h"
 
 namespace welkin::scene {
@@ -96,6 +97,16 @@ AmbientLight ambientLight(const SkyState& s) {
   return a;
 }
 
+// What is wrong with the files of the sheets by hand.
+std::vector<std::string> textureWarnings(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (const Sheet& sheet : scene.sheets)
+    if (sheet.texture)
+      if (std::string warning = patternOf(sheet, 0).warning; !warning.empty())
+        warnings.push_back(std::move(warning));
+  return warnings;
+}
+
 double headingOf(const SkyState& s) {
   if (s.scene.camera.headingDeg) return *s.scene.camera.headingDeg;
   if (s.scene.camera.projection != Projection::kPerspective) return 0.0;
@@ -137,6 +148,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     s.sheetCover = std::move(cover.sheets);
     s.skyCover = cover.sky;
   }
+  s.warnings = previous ? previous->warnings : textureWarnings(scene);
 
   s.atmosphere =
       previous ? previous->atmosphere

@@ -29,14 +29,35 @@ SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, 
   return matter;
 }
 
+SheetMatter matterAt(const scene::Sheet& sheet, const SheetMatter& described, double secondsAfter) {
+  if (sheet.drift.drift.coverOktas == 0.0) return described;
+  // The mean depth of the pattern's cloud under a law, by the table of its values.
+  const auto meanDepth = [&](const field::Condensation& law) {
+    constexpr int kColumns = 256;
+    double sum = 0.0, count = 1e-9;
+    for (int i = 0; i < kColumns; ++i) {
+      const double excess = described.quantiles.above((i + 0.5) / kColumns) - law.threshold;
+      if (excess <= 0.0) break;
+      sum += law.k * excess;
+      count += 1.0;
+    }
+    return std::clamp(sum / count, 0.05, 200.0);
+  };
+  SheetMatter now = described;
+  now.law = scene::lawAt(sheet, described.law, described.quantiles, secondsAfter);
+  now.typicalDepth = static_cast<float>(static_cast<double>(described.typicalDepth) * meanDepth(now.law) /
+                                        meanDepth(described.law));
+  return now;
+}
+
 SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double secondsAfter,
                  const glm::dvec3& eyeM, const glm::vec3& toLight, float pixelRad) {
   const bool volume = sheet.surface == scene::SheetSurface::kDome;
-  const double towards = radians(sheet.windFromDeg + 180.0), moved = sheet.windSpeedMps * secondsAfter;
-  const glm::dvec3 shift(eyeM.x - moved * std::sin(towards), eyeM.y - moved * std::cos(towards),
-                         volume ? -sheet.riseMps * secondsAfter : 0.0);
+  const glm::dvec2 moved = scene::windPathM(sheet, secondsAfter);
+  const glm::dvec3 shift(eyeM.x - moved.x, eyeM.y - moved.y, volume ? -sheet.riseMps * secondsAfter : 0.0);
   SheetLook look;
-  look.offset = glm::vec3(glm::fract(matter.origin + shift / sheet.tileM));  // whole tiles make no difference
+  look.offset = glm::vec3(
+      glm::fract(matter.origin + sheet.offset + shift / sheet.tileM));  // whole tiles make no difference
   look.perM = glm::vec3(1.0f, 1.0f, volume ? 1.0f : 0.0f) / static_cast<float>(sheet.tileM);
   look.threshold = static_cast<float>(matter.law.threshold);
   look.steepness = static_cast<float>(std::min(matter.law.k, 1e4));
@@ -44,6 +65,7 @@ SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double se
   look.heightM = static_cast<float>(sheet.heightM);
   look.thicknessM = static_cast<float>(sheet.thicknessM);
   look.typicalDepth = matter.typicalDepth;
+  look.tint = glm::vec3(sheet.colour);
   look.texelsPerPixel = pixelRad * static_cast<float>(static_cast<double>(sheet.texels) / sheet.tileM);
 
   const glm::vec2 level(toLight);

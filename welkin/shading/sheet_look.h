@@ -17,6 +17,7 @@ struct SheetLook {
   glm::vec3 offset{0.0f}, perM{0.0f};
   float threshold = 0.0f, steepness = 1.0f, bias = 1.0f, heightM = 0.0f, thicknessM = 1.0f,
         typicalDepth = 1.0f;
+  glm::vec3 tint{1.0f};
   glm::vec3 sunStep{0.0f};      // uSunStep of pass/sheet.frag
   float texelsPerPixel = 1.0f;  // at 1 m
 };
@@ -29,6 +30,8 @@ struct SheetMatter {
   glm::dvec3 origin{0.0};             // of the pattern, tiles: each seed its own part
 };
 SheetMatter matterOf(const scene::Sheet& sheet, std::span<const float> pattern, std::uint64_t seed);
+// The same at an instant, as the sheet's cover drifts.
+SheetMatter matterAt(const scene::Sheet& sheet, const SheetMatter& described, double secondsAfter);
 
 // secondsAfter: the scene's time; eyeM: in the world, east-north-up; toLight: unit;
 // pixelRad: angle of a pixel.

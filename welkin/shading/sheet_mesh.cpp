@@ -76,9 +76,10 @@ SheetMesh planeMesh(double heightM) {
   const auto line = [&](int i) { return kPlaneReach * heightM * planeLine(i - kPlaneRings); };
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      const bool rim = i == 0 || j == 0 || i == n - 1 || j == n - 1;
+      const double out = std::max(std::abs(line(i)), std::abs(line(j))) / (kPlaneReach * heightM);
       mesh.vertices.insert(mesh.vertices.end(), {static_cast<float>(line(i)), static_cast<float>(line(j)),
-                                                 static_cast<float>(heightM), rim ? 0.0f : 1.0f});
+                                                 static_cast<float>(heightM),
+                                                 static_cast<float>(std::min(1.5 * (1.0 - out), 1.0))});
     }
   for (int j = 0; j + 1 < n; ++j)
     for (int i = 0; i + 1 < n; ++i) {
@@ -131,7 +132,7 @@ SheetShape shapeOf(const scene::Sheet& sheet, double earthRadiusM, double eyeM) 
   switch (sheet.surface) {
     case scene::SheetSurface::kPlane:
       return {{1.0f, 1e12f, height, static_cast<float>(kPlaneReach * h)},
-              static_cast<float>(kPlaneReach * h * planeLine(kPlaneRings - 1))};
+              static_cast<float>(kPlaneReach * h / 3.0)};
     case scene::SheetSurface::kSkyPlane: {
       const auto radius = [&](int ring) {
         const RingAt at = skyRing(ring, h, earthRadiusM);

@@ -20,9 +20,9 @@ struct SheetMesh {
   std::vector<std::uint32_t> indices;
 };
 
-// A flat square of half-side `reach` times its height, alpha 1 within and 0 at the outermost vertices:
-// Tarantilis's 4 x 4 vertices, more finely divided so that air and light, which are computed at the vertices,
-// stay smooth.
+// A flat square, 20 heights to either side: alpha 1 in its inner third, then falling to 0 at the rim. That is
+// Tarantilis's 4 x 4 vertices, the outer ring of which has alpha 0, more finely divided so that air and
+// light, which are computed at the vertices, stay smooth.
 SheetMesh planeMesh(double heightM);
 
 // The same height above a sphere of the earth's radius, from the zenith to beyond the horizon of an eye on
@@ -30,7 +30,9 @@ SheetMesh planeMesh(double heightM);
 SheetMesh skyPlaneMesh(double heightM, double earthRadiusM);
 
 // Tarantilis's dome: rings from the zenith to the horizon, denser there, alpha 1, then .7, .3, 0 on the last
-// four. `radiusM` wide, flattened so that its zenith is at heightM.
+// four. `radiusM` wide, flattened so that its zenith is at heightM. It stands for the dome of "Realistic
+// Real-Time Skies" as well, a half sphere with a vertex every ten degrees: the pattern is looked up by place,
+// so that where the vertices lie makes no difference to be seen.
 SheetMesh domeMesh(double heightM, double radiusM, int segments = 20);
 
 SheetMesh meshOf(const scene::Sheet& sheet, double earthRadiusM);

@@ -97,6 +97,24 @@ TEST_F(SheetAmbientTest, RisesWithPartialCover) {
   }
 }
 
+// The gem: the light all around rises as clouds spread and falls again when they close. High sun, where
+// broken cloud has most to scatter.
+TEST(SheetAmbient, RisesToHalfCoverAndFallsToOvercast) {
+  const scene::SkyState noon = scene::buildSky(testing::clearScene(75.0), 0.0);
+  std::vector<double> sky, direct;
+  for (int oktas = 0; oktas <= 8; ++oktas) {
+    // Clouds that close get deeper as well: fair-weather cumulus at 4 oktas, a rainy deck at 8.
+    const SheetMatter layer = layerOf(oktas, 8.0 * std::pow(7.5, (oktas - 4) / 4.0));
+    const Ground g = groundUnder(noon, {layer});
+    sky.push_back(g.sky);
+    direct.push_back(g.direct);
+  }
+  for (std::size_t i = 1; i <= 4; ++i) EXPECT_GT(sky[i], sky[i - 1]) << i;
+  EXPECT_GT(sky[4], 1.5 * sky[0]);
+  EXPECT_LT(sky[8], 0.9 * sky[4]);
+  for (std::size_t i = 1; i <= 8; ++i) EXPECT_LT(direct[i], direct[i - 1]) << i;
+}
+
 // Measured by day under overcast: a tenth to a third of the clear sky's light, all of it diffuse.
 TEST_F(SheetAmbientTest, ThickOvercastIsDarkAndGrey) {
   const Ground g = groundUnder(state, {layerOf(8.0, 60.0)});

@@ -2,7 +2,9 @@
 // Meshes and looks of thin layers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <utility>
@@ -94,6 +96,60 @@ TEST(SheetMesh, DomeFadesInThreeRings) {
   EXPECT_EQ(vertexOf(mesh, n - 61).alpha, 1.0f);
   EXPECT_NEAR(vertexOf(mesh, 0).p.z, 550.0, 1e-3);
   EXPECT_NEAR(vertexOf(mesh, n - 20).p.x, 5500.0, 1e-2);
+}
+
+// Tarantilis's ring: from 1 on the inner vertices of his 4 x 4 to 0 on the outer ones.
+TEST(SheetMesh, PlaneFadesOverItsOuterThird) {
+  const SheetMesh mesh = planeMesh(1000.0);
+  int whole = 0, fading = 0, rim = 0;
+  for (std::size_t i = 0; i < vertexCount(mesh); ++i) {
+    const Vertex v = vertexOf(mesh, i);
+    const double out = std::max(std::abs(v.p.x), std::abs(v.p.y)) / 20000.0;
+    if (out < 1.0 / 3.0) {
+      EXPECT_EQ(v.alpha, 1.0f);
+      ++whole;
+    } else {
+      EXPECT_NEAR(v.alpha, 1.5 * (1.0 - out), 1e-5);
+      out == 1.0 ? ++rim : ++fading;
+    }
+    if (out == 1.0) {
+      EXPECT_EQ(v.alpha, 0.0f);
+    }
+  }
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(fading, 100);
+  EXPECT_EQ(rim, 96);
+}
+
+// A turning wind moves the pattern by the integral of its velocity, an offset by tiles, and a tint is a tint.
+TEST(SheetLook, FollowsDriftOffsetAndTint) {
+  scene::Sheet sheet;
+  sheet.windSpeedMps = 10.0;
+  sheet.drift = {{.windDeg = 90.0, .coverOktas = 2.0, .periodH = 1.0}, 4, 5};
+  sheet.oktas = 4.0;
+  sheet.texels = 64;
+  const Image<float> pattern = scene::flatPattern(sheet, 1);
+  const SheetMatter matter = matterOf(sheet, pattern.data, 1);
+  const auto look = [&](double seconds) {
+    return lookOf(sheet, matterAt(sheet, matter, seconds), seconds, glm::dvec3(0.0), {0.0f, 0.0f, 1.0f},
+                  0.001f);
+  };
+  const glm::dvec2 path =
+      10.0 * scene::windPath(sheet.drift.drift, 4, sheet.windFromDeg, 1800.0) / sheet.tileM;
+  EXPECT_NEAR(glm::fract(look(0.0).offset.x - path.x), look(1800.0).offset.x, 1e-5);
+  EXPECT_NEAR(glm::fract(look(0.0).offset.y - path.y), look(1800.0).offset.y, 1e-5);
+  EXPECT_GT(std::abs(path.y), 2e-3);
+  // Cover as law: the threshold moves, smoothly, and is the described one at the scene's time.
+  EXPECT_EQ(look(0.0).threshold, static_cast<float>(matter.law.threshold));
+  EXPECT_NE(look(700.0).threshold, look(0.0).threshold);
+  EXPECT_NEAR(look(700.0).threshold, look(701.0).threshold, 1e-3);
+
+  const SheetLook before = look(0.0);
+  sheet.offset = {0.25, 0.5, 0.0};
+  sheet.colour = {1.0, 0.5, 0.25};
+  EXPECT_NEAR(look(0.0).offset.x, glm::fract(before.offset.x + 0.25f), 1e-6f);
+  EXPECT_NEAR(look(0.0).offset.y, glm::fract(before.offset.y + 0.5f), 1e-6f);
+  EXPECT_EQ(look(0.0).tint, glm::vec3(1.0f, 0.5f, 0.25f));
 }
 
 SheetLook lookAt(double heightM, double seconds, glm::dvec3 eye = glm::dvec3(0.0)) {
