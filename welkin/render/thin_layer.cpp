@@ -32,12 +32,13 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
   if (sheet.pattern == scene::SheetPattern::kOctaves) {
     const int n = static_cast<int>(sheet.texels);
     layer.living.emplace(sheet, seed);
+    layer.described = shading::matterOf(sheet, layer.living->pattern().samples(), seed);
     layer.flat = gpu::Texture2D(n, n, options);  // composed at every instant
   } else {
     pattern = scene::patternOf(sheet, seed);
+    layer.described = shading::matterOf(sheet, pattern.values(), seed);
   }
-  layer.described = layer.matter =
-      shading::matterOf(sheet, layer.living ? layer.living->pattern().samples() : pattern.values(), seed);
+  layer.matter = layer.described;
   if (sheet.surface == scene::SheetSurface::kDome) {
     layer.sheet.texels = pattern.volume.nx;
     layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern.volume) : pattern.volume, options);

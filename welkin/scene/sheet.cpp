@@ -277,8 +277,7 @@ double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfte
   std::vector<float> described, shown;
   if (sheet.pattern == SheetPattern::kOctaves) {
     const LivingPattern living(sheet, seed);
-    const std::span<const float> samples = living.samples();
-    described.assign(samples.begin(), samples.end());
+    described = living.samples();
     shown = living.image(living.shown(secondsAfter), static_cast<int>(sheet.texels)).data;
   } else {
     const PatternTexels texels = patternOf(sheet, seed);
