@@ -22,7 +22,7 @@ endif()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/welkin" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin"
   FILES_MATCHING PATTERN "*.h"
   # Compiled once for each instruction set, inside one source; and what asks for a library that users need not have.
-  PATTERN "*-inl.h" EXCLUDE PATTERN "toml_reader.h" EXCLUDE)
+  PATTERN "*-inl.h" EXCLUDE PATTERN "toml_reader.h" EXCLUDE PATTERN "sheet_reader.h" EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders/lib" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin/shaders"
   FILES_MATCHING PATTERN "*.glsl")
 
