@@ -294,7 +294,8 @@ class GradientRows {
         const auto sum = hn::Add(hn::LoadU(du, hashes + n), hn::Set(du, planes_[kMaxPlanes * t + p].hash));
         hn::Store(hn::Or(mixedWords(sum), hn::Set(du, 1u)), du, rows[p] + n);
       }
-    Hashes hash{term.x.lowHash + x_, term.x.highHash + x_, 0, 0};
+    Hashes hash{};  // stays so where points are gathered: they have hashes of their own
+    if (term.x.lowHash != nullptr) hash = {term.x.lowHash + x_, term.x.highHash + x_, 0, 0};
     if (term.lattice->published()) {
       hash = {published_, published_ + kStrip, std::ptrdiff_t{2} * kStrip * kPlanes,
               std::ptrdiff_t{2} * kStrip};
