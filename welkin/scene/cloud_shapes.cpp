@@ -34,7 +34,7 @@ struct Habit {
 // In the order of weather::Genus. Chosen by eye against photographs of the International Cloud Atlas.
 constexpr std::array<Habit, 11> kHabits = {{
     // cumulus: flat bases, domed towers, cauliflower
-    {1.7, 700, 4000, 9000, .84, .20, .50, .35, 1.0, 2.3, 1.15, .05, 0,  .05,
+    {1.7, 700, 4000, 9000, .84, .20, .50, .35, 1.0, 2.6, 1.55, .05, 0,  .05,
      .06, .42, 250,  900,  .48, .22, 1.0, 75,  .17, .07,  .75, .15, 1.2},
     // stratocumulus: lumps and rolls, shallow, flat above and below
     {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0, .12,
