@@ -139,8 +139,8 @@ std::vector<GridBall> relocated(const DensityGrid& data, const std::vector<GridB
   const std::vector<double> worth = worthOf(data, balls);
   std::vector<std::size_t> order(balls.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return worth[a] < worth[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return worth[a] != worth[b] ? worth[a] < worth[b] : a < b; });
   std::vector<bool> taken(balls.size(), false);
   for (std::size_t i = move.spared; i < std::min(move.spared + move.count, order.size()); ++i)
     taken[order[i]] = true;
