@@ -15,8 +15,10 @@
 #include "welkin/core/parallel.h"
 #include "welkin/field/cloud_map.h"
 #include "welkin/field/cumulus_tower.h"
+#include "welkin/field/metaball_cumulus.h"
 #include "welkin/io/atomic_file.h"
 #include "welkin/scene/ellipsoid_file.h"
+#include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_json.h"
 
 namespace welkin::app {
@@ -111,6 +113,40 @@ Json reportOf(const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& 
           {"cloud", Json::parse(scene::toJson(r.map))}};
 }
 
+// A tower of metaballs, without a map between.
+int growMetaballs(const CloudArgs& args) {
+  const OutputArgs& o = args.output;
+  if (!args.cumulus)
+    throw UsageError("cloud: " + *o.out +
+                     ": metaballs are grown by --cumulus; welkin fit makes them from a map");
+  for (const auto& [path, text] : args.params)
+    if (!path.starts_with("tower.") && path != "dynamics")
+      throw UsageError(
+          "cloud: " + *o.out +
+          ": metaballs have neither voxels nor noise; expected only --dynamics, their density, and "
+          "the flags of a tower");
+  if (args.size || o.preview || o.tile || o.file.format || o.file.mipmaps || o.file.edges || o.file.header)
+    throw UsageError("cloud: " + *o.out + ": --size, --preview, --tile and --format are for volumes");
+  checkReport(o);
+  CloudRequest r;
+  applyTexts(r, args.params, cloudParamFlags());
+  const Stopwatch watch;
+  scene::MetaballFile file;
+  file.levels.push_back({field::cumulusMetaballs(r.tower, r.map.dynamics), {}, {}});
+  io::writeTextFile(*o.out, scene::metaballText(file));
+  if (o.report) {
+    const Json report = {
+        {"welkin", WELKIN_VERSION},
+        {"output", *o.out},
+        {"balls", file.balls().size()},
+        {"integral_m3", field::integralOf(file.balls())},
+        {"total_ms", watch.ms()},
+        {"cloud", {{"dynamics", r.map.dynamics}, {"tower", Json::parse(scene::toJson(r.tower))}}}};
+    io::writeTextFile(*o.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::vector<scene::ParamDoc> cloudParamDocs() {
@@ -128,6 +164,8 @@ std::vector<ParamFlag> cloudParamFlags() {
 int runCloud(const CloudArgs& args) {
   if (!args.output.out) throw UsageError("cloud: expected -o OUT, the file to write");
   if (args.output.threads) setThreadCount(threadsOf(*args.output.threads));
+  if (args.output.out->ends_with(".json") && !args.output.out->ends_with(".raw.json"))
+    return growMetaballs(args);
   CloudRequest request;
   const std::vector<field::Ellipsoid> ellipsoids = ellipsoidsOf(args, request);
   try {
