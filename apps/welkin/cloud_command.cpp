@@ -44,6 +44,20 @@ bool anyOf(const ParamTexts& texts, std::string_view group) {
   return std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.first.starts_with(group); });
 }
 
+void applySize(const std::string& text, field::CloudMapParams& map) {
+  if (!isVolume(text)) throw UsageError("--size: expected WIDTHxHEIGHTxDEPTH, found \"" + text + "\"");
+  const glm::ivec3 size = sizeOf(text);
+  map.nx = size.x, map.ny = size.y, map.nz = size.z;
+}
+
+void validateMap(const field::CloudMapParams& map) {
+  try {
+    validate(map);
+  } catch (const ParameterError& e) {
+    throw UsageError("cloud: " + std::string(e.what()));
+  }
+}
+
 std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& r) {
   const auto flags = cloudParamFlags();
   if (args.cumulus && args.ellipsoids) throw UsageError("--cumulus and --ellipsoids: expected one of them");
@@ -58,12 +72,7 @@ std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& 
     r.map = field::cumulusMap(r.tower, r.map.voxelM);
     applyTexts(r, args.params, flags);
   }
-  if (args.size) {
-    if (!isVolume(*args.size))
-      throw UsageError("--size: expected WIDTHxHEIGHTxDEPTH, found \"" + *args.size + "\"");
-    const glm::ivec3 size = sizeOf(*args.size);
-    r.map.nx = size.x, r.map.ny = size.y, r.map.nz = size.z;
-  }
+  if (args.size) applySize(*args.size, r.map);
   std::vector<field::Ellipsoid> ellipsoids;
   if (args.cumulus) {
     ellipsoids = field::cumulusTower(r.tower);
@@ -76,6 +85,33 @@ std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& 
   }
   if (args.ellipsoids && !args.size) field::fitBox(r.map, ellipsoids);
   return ellipsoids;
+}
+
+// The balls of a file, drawn into voxels.
+Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
+  if (args.cumulus || args.ellipsoids)
+    throw UsageError("--metaballs, --cumulus and --ellipsoids: expected one of them");
+  for (const auto& [path, text] : args.params)
+    if (path != "voxel_m" && path != "dynamics")
+      throw UsageError(
+          "cloud: of all that shapes a cloud, only --size, --voxel and --dynamics go with --metaballs");
+  applyTexts(r, args.params, cloudParamFlags());
+  std::vector<field::Metaball> balls = scene::readMetaballs(*args.metaballs).levels.back().balls;
+  std::vector<field::Ellipsoid> box;
+  for (field::Metaball& b : balls) {
+    b.density *= r.map.dynamics;
+    box.push_back({b.centreM, glm::dvec3(b.radiusM), glm::dvec3(0.0)});
+  }
+  if (args.size)
+    applySize(*args.size, r.map);
+  else
+    field::fitBox(r.map, box);
+  validateMap(r.map);
+  Volume<float> map = field::rasterise(
+      balls, {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny), static_cast<int>(r.map.nz),
+              glm::dvec3(r.map.voxelM), field::firstVoxelM(r.map)});
+  for (float& v : map.data) v = std::max(v, 0.0f);
+  return map;
 }
 
 TexelSource sourceOf(const CloudRequest& r, const std::string& out) {
@@ -167,21 +203,24 @@ int runCloud(const CloudArgs& args) {
   if (args.output.out->ends_with(".json") && !args.output.out->ends_with(".raw.json"))
     return growMetaballs(args);
   CloudRequest request;
-  const std::vector<field::Ellipsoid> ellipsoids = ellipsoidsOf(args, request);
-  try {
-    validate(request.map);
-  } catch (const ParameterError& e) {
-    throw UsageError("cloud: " + std::string(e.what()));
-  }
   catchInterrupts();
   const Stopwatch watch;
+  Volume<float> map;
+  std::vector<field::Ellipsoid> ellipsoids;
+  if (args.metaballs) {
+    map = rasterised(args, request);
+  } else {
+    ellipsoids = ellipsoidsOf(args, request);
+    validateMap(request.map);
+  }
   TexelOutput output(args.output, sourceOf(request, *args.output.out));
   ProgressLine progress;
   progress.begin("filling the cloud");
-  Volume<float> map = field::cloudMap(request.map, ellipsoids, [&](double fraction) {
-    throwIfInterrupted();
-    progress.show(fraction);
-  });
+  if (!args.metaballs)
+    map = field::cloudMap(request.map, ellipsoids, [&](double fraction) {
+      throwIfInterrupted();
+      progress.show(fraction);
+    });
   const auto voxels = std::count_if(map.data.begin(), map.data.end(), [](float d) { return d > 0.0f; });
   progress.begin("writing");
   const std::size_t slice = static_cast<std::size_t>(map.nx) * map.ny;

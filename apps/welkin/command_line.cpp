@@ -186,6 +186,8 @@ void describeCloud(CLI::App* app, CloudArgs& a) {
   add(app, "--size", a.size, "WxHxD",
       "voxels east, north and up (default 48x36x24, or what holds the tower or the ellipsoids)");
   add(app, "--ellipsoids", a.ellipsoids, "FILE.toml", "many ellipsoids, [[ellipsoid]] each");
+  add(app, "--metaballs", a.metaballs, "FILE.json",
+      "the balls of such a file, where their sum is above 0; no noise");
   app->add_flag("--cumulus", a.cumulus,
                 wrapped("a tower of cumulus, built from many ellipsoids by rule; Perlin noise of 5 octaves, "
                         "shifted, with cells of a sixth of the width, and a threshold of 0.25, unless told"));

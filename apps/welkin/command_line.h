@@ -59,7 +59,7 @@ struct NoiseArgs {
 
 struct CloudArgs {
   std::map<std::string, std::string> params;
-  Flag size, ellipsoids;
+  Flag size, ellipsoids, metaballs;
   bool cumulus = false;
   OutputArgs output;
 };

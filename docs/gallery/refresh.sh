@@ -32,3 +32,4 @@ picture flare_right "$here/flare.toml" --look 250,16 --size 640x360
 picture flare_high "$here/flare.toml" --look 288,8 --size 640x360
 picture flare_middle "$here/flare.toml" --look 276.3,26.9 --size 640x360
 "$here/noise.sh" "$program"
+"$here/metaballs.sh" "$program"

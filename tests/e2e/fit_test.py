@@ -114,6 +114,21 @@ class Fit(ProgramTest):
         self.fail_with(2, "neither voxels nor noise", "cloud", "--cumulus", "--octaves", "3", "-o", "y.json")
         self.fail_with(2, "are for volumes", "cloud", "--cumulus", "--preview", "p.png", "-o", "y.json")
 
+    def test_metaballs_as_a_volume(self):
+        self.fit("--balls", "20", "--effort", "0", "-o", "x.json")
+        self.succeed("cloud", "--metaballs", "x.json", "--size", "24x18x12", "--voxel", "40", "--dynamics", "2", "-o", "v.raw")
+        side, balls = self.read("v.raw.json"), self.read("x.json")["balls"]
+        self.assertEqual(side["first_voxel_m"], self.read("m.raw.json")["first_voxel_m"])
+        values = struct.unpack("<5184f", (self.folder / "v.raw").read_bytes())
+        for i in range(0, 5184, 97):
+            at = (i % 24, i // 24 % 18, i // (24 * 18))
+            expected = 2 * field_at(balls, [f + 40 * n for f, n in zip(side["first_voxel_m"], at)])
+            self.assertAlmostEqual(values[i], expected, places=5)
+        self.succeed("cloud", "--metaballs", "x.json", "--voxel", "60", "-o", "v.vdb")
+        self.fail_with(2, "go with --metaballs", "cloud", "--metaballs", "x.json", "--octaves", "2", "-o", "v.raw")
+        self.fail_with(2, "expected one of them", "cloud", "--metaballs", "x.json", "--cumulus", "-o", "w.raw")
+        self.fail_with(1, "none.json: cannot be opened", "cloud", "--metaballs", "none.json", "-o", "w.raw")
+
     def test_wrong_calls(self):
         for args, message in (((), "expected -o OUT.json"), (("-o", "x.json"), "expected --balls K"),
                               (("-o", "x.vdb", "--balls", "3"), "x.vdb is no .json"),
