@@ -144,8 +144,9 @@ std::vector<std::vector<std::uint32_t>> neighboursOf(std::span<const GridBall> b
         const double reach = ball.radius + balls[other].radius;
         if (square(balls[other].centre - ball.centre) < reach * reach) list.push_back(other);
       };
-      for (std::size_t m = n; m-- > 0 && ball.centre.x - balls[order[m]].centre.x < ball.radius + widest;)
-        look(order[m]);
+      for (std::size_t m = n; m > 0 && ball.centre.x - balls[order[m - 1]].centre.x < ball.radius + widest;
+           --m)
+        look(order[m - 1]);
       for (std::size_t m = n + 1;
            m < order.size() && balls[order[m]].centre.x - ball.centre.x < ball.radius + widest; ++m)
         look(order[m]);

@@ -218,6 +218,7 @@ std::vector<Cluster> manClusters(const DensityGrid& data, std::size_t count, std
   };
   shuffle();
   std::vector<glm::dvec3> centres;
+  centres.reserve(count);
   for (std::size_t k = 0; k < count; ++k) centres.push_back(points[order[k]].at);
   const auto nearestTo = [&](const glm::dvec3& p) {
     std::size_t nearest = 0;

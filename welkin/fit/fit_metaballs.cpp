@@ -92,7 +92,7 @@ class LevelFit {
  private:
   int roundsFor(std::size_t count) const {
     const auto k = static_cast<double>(count);
-    return static_cast<int>(std::lround(params_.effort * (7.0 - 3.0 * 100.0 / (k + 100.0))));
+    return static_cast<int>(std::lround(params_.effort * (7.0 - 5.0 * 100.0 / (k + 100.0))));
   }
 
   void stepDone(double steps) {
@@ -119,6 +119,7 @@ class LevelFit {
         params_.leastRadiusVoxels * std::max({data.grid.step.x, data.grid.step.y, data.grid.step.z});
     const auto ballsWith = [&](double spread) {
       std::vector<GridBall> balls;
+      balls.reserve(found.size());
       for (const Cluster& c : found)
         balls.push_back({c.centre, std::max(spread * c.spread, least), man ? c.density : 1.0});
       if (man)
