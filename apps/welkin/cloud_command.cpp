@@ -15,8 +15,10 @@
 #include "welkin/core/parallel.h"
 #include "welkin/field/cloud_map.h"
 #include "welkin/field/cumulus_tower.h"
+#include "welkin/field/metaball_cumulus.h"
 #include "welkin/io/atomic_file.h"
 #include "welkin/scene/ellipsoid_file.h"
+#include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_json.h"
 
 namespace welkin::app {
@@ -42,6 +44,20 @@ bool anyOf(const ParamTexts& texts, std::string_view group) {
   return std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.first.starts_with(group); });
 }
 
+void applySize(const std::string& text, field::CloudMapParams& map) {
+  if (!isVolume(text)) throw UsageError("--size: expected WIDTHxHEIGHTxDEPTH, found \"" + text + "\"");
+  const glm::ivec3 size = sizeOf(text);
+  map.nx = size.x, map.ny = size.y, map.nz = size.z;
+}
+
+void validateMap(const field::CloudMapParams& map) {
+  try {
+    validate(map);
+  } catch (const ParameterError& e) {
+    throw UsageError("cloud: " + std::string(e.what()));
+  }
+}
+
 std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& r) {
   const auto flags = cloudParamFlags();
   if (args.cumulus && args.ellipsoids) throw UsageError("--cumulus and --ellipsoids: expected one of them");
@@ -56,12 +72,7 @@ std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& 
     r.map = field::cumulusMap(r.tower, r.map.voxelM);
     applyTexts(r, args.params, flags);
   }
-  if (args.size) {
-    if (!isVolume(*args.size))
-      throw UsageError("--size: expected WIDTHxHEIGHTxDEPTH, found \"" + *args.size + "\"");
-    const glm::ivec3 size = sizeOf(*args.size);
-    r.map.nx = size.x, r.map.ny = size.y, r.map.nz = size.z;
-  }
+  if (args.size) applySize(*args.size, r.map);
   std::vector<field::Ellipsoid> ellipsoids;
   if (args.cumulus) {
     ellipsoids = field::cumulusTower(r.tower);
@@ -74,6 +85,33 @@ std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& 
   }
   if (args.ellipsoids && !args.size) field::fitBox(r.map, ellipsoids);
   return ellipsoids;
+}
+
+// The balls of a file, drawn into voxels.
+Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
+  if (args.cumulus || args.ellipsoids)
+    throw UsageError("--metaballs, --cumulus and --ellipsoids: expected one of them");
+  for (const auto& [path, text] : args.params)
+    if (path != "voxel_m" && path != "dynamics")
+      throw UsageError(
+          "cloud: of all that shapes a cloud, only --size, --voxel and --dynamics go with --metaballs");
+  applyTexts(r, args.params, cloudParamFlags());
+  std::vector<field::Metaball> balls = scene::readMetaballs(*args.metaballs).levels.back().balls;
+  std::vector<field::Ellipsoid> box;
+  for (field::Metaball& b : balls) {
+    b.density *= r.map.dynamics;
+    box.push_back({b.centreM, glm::dvec3(b.radiusM), glm::dvec3(0.0)});
+  }
+  if (args.size)
+    applySize(*args.size, r.map);
+  else
+    field::fitBox(r.map, box);
+  validateMap(r.map);
+  Volume<float> map = field::rasterise(
+      balls, {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny), static_cast<int>(r.map.nz),
+              glm::dvec3(r.map.voxelM), field::firstVoxelM(r.map)});
+  for (float& v : map.data) v = std::max(v, 0.0f);
+  return map;
 }
 
 TexelSource sourceOf(const CloudRequest& r, const std::string& out) {
@@ -111,6 +149,40 @@ Json reportOf(const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& 
           {"cloud", Json::parse(scene::toJson(r.map))}};
 }
 
+// A tower of metaballs, without a map between.
+int growMetaballs(const CloudArgs& args) {
+  const OutputArgs& o = args.output;
+  if (!args.cumulus)
+    throw UsageError("cloud: " + *o.out +
+                     ": metaballs are grown by --cumulus; welkin fit makes them from a map");
+  for (const auto& [path, text] : args.params)
+    if (!path.starts_with("tower.") && path != "dynamics")
+      throw UsageError(
+          "cloud: " + *o.out +
+          ": metaballs have neither voxels nor noise; expected only --dynamics, their density, and "
+          "the flags of a tower");
+  if (args.size || o.preview || o.tile || o.file.format || o.file.mipmaps || o.file.edges || o.file.header)
+    throw UsageError("cloud: " + *o.out + ": --size, --preview, --tile and --format are for volumes");
+  checkReport(o);
+  CloudRequest r;
+  applyTexts(r, args.params, cloudParamFlags());
+  const Stopwatch watch;
+  scene::MetaballFile file;
+  file.levels.push_back({field::cumulusMetaballs(r.tower, r.map.dynamics), {}, {}});
+  io::writeTextFile(*o.out, scene::metaballText(file));
+  if (o.report) {
+    const Json report = {
+        {"welkin", WELKIN_VERSION},
+        {"output", *o.out},
+        {"balls", file.balls().size()},
+        {"integral_m3", field::integralOf(file.balls())},
+        {"total_ms", watch.ms()},
+        {"cloud", {{"dynamics", r.map.dynamics}, {"tower", Json::parse(scene::toJson(r.tower))}}}};
+    io::writeTextFile(*o.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::vector<scene::ParamDoc> cloudParamDocs() {
@@ -128,22 +200,27 @@ std::vector<ParamFlag> cloudParamFlags() {
 int runCloud(const CloudArgs& args) {
   if (!args.output.out) throw UsageError("cloud: expected -o OUT, the file to write");
   if (args.output.threads) setThreadCount(threadsOf(*args.output.threads));
+  if (args.output.out->ends_with(".json") && !args.output.out->ends_with(".raw.json"))
+    return growMetaballs(args);
   CloudRequest request;
-  const std::vector<field::Ellipsoid> ellipsoids = ellipsoidsOf(args, request);
-  try {
-    validate(request.map);
-  } catch (const ParameterError& e) {
-    throw UsageError("cloud: " + std::string(e.what()));
-  }
   catchInterrupts();
   const Stopwatch watch;
+  Volume<float> map;
+  std::vector<field::Ellipsoid> ellipsoids;
+  if (args.metaballs) {
+    map = rasterised(args, request);
+  } else {
+    ellipsoids = ellipsoidsOf(args, request);
+    validateMap(request.map);
+  }
   TexelOutput output(args.output, sourceOf(request, *args.output.out));
   ProgressLine progress;
   progress.begin("filling the cloud");
-  Volume<float> map = field::cloudMap(request.map, ellipsoids, [&](double fraction) {
-    throwIfInterrupted();
-    progress.show(fraction);
-  });
+  if (!args.metaballs)
+    map = field::cloudMap(request.map, ellipsoids, [&](double fraction) {
+      throwIfInterrupted();
+      progress.show(fraction);
+    });
   const auto voxels = std::count_if(map.data.begin(), map.data.end(), [](float d) { return d > 0.0f; });
   progress.begin("writing");
   const std::size_t slice = static_cast<std::size_t>(map.nx) * map.ny;

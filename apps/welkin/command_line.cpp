@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cloud_command.h"
+#include "fit_command.h"
 #include "noise_command.h"
 #include "param_flags.h"
 #include "usage_error.h"
@@ -121,12 +122,22 @@ const char* typeNameOf(const scene::ParamDoc& doc) {
 
 // A flag for each described parameter.
 void addParams(CLI::App* app, const Docs& docs, const std::vector<ParamFlag>& flags, ParamTexts& texts) {
-  for (const ParamFlag& flag : flags)
+  for (const ParamFlag& flag : flags) {
+    const scene::ParamDoc& doc = scene::docOf(docs, flag.path);
+    // What is false unless told may be told without a value.
+    if (doc.type == "true or false" && doc.defaultValue == "false") {
+      app->add_flag_callback(
+             flag.name, [&texts, path = flag.path] { texts[path] = "true"; },
+             wrapped(helpOf(docs, flag.path)))
+          ->group(flag.group);
+      continue;
+    }
     app->add_option_function<std::string>(
            flag.name, [&texts, path = flag.path](const std::string& text) { texts[path] = text; },
            wrapped(helpOf(docs, flag.path)))
-        ->type_name(typeNameOf(scene::docOf(docs, flag.path)))
+        ->type_name(typeNameOf(doc))
         ->group(flag.group);
+  }
 }
 
 void addTexelFile(CLI::App* app, TexelFileFlags& f, const std::string& formatDefault,
@@ -173,14 +184,29 @@ void describeNoise(CLI::App* app, NoiseArgs& a) {
 }
 
 void describeCloud(CLI::App* app, CloudArgs& a) {
-  describeOutput(app, a.output, "volume .vdb .dds .raw");
+  describeOutput(app, a.output, "volume .vdb .dds .raw; with --cumulus metaballs .json, grown without a map");
   add(app, "--size", a.size, "WxHxD",
       "voxels east, north and up (default 48x36x24, or what holds the tower or the ellipsoids)");
   add(app, "--ellipsoids", a.ellipsoids, "FILE.toml", "many ellipsoids, [[ellipsoid]] each");
+  add(app, "--metaballs", a.metaballs, "FILE.json",
+      "the balls of such a file, where their sum is above 0; no noise");
   app->add_flag("--cumulus", a.cumulus,
                 wrapped("a tower of cumulus, built from many ellipsoids by rule; Perlin noise of 5 octaves, "
                         "shifted, with cells of a sixth of the width, and a threshold of 0.25, unless told"));
   addParams(app, cloudParamDocs(), cloudParamFlags(), a.params);
+}
+
+void describeFit(CLI::App* app, FitArgs& a) {
+  app->add_option("map", a.map, "volume of density .vdb .dds .raw")->type_name("MAP");
+  add(app, "-o,--output", a.out, "OUT.json", "the balls; `welkin info` says what such a file holds");
+  add(app, "--balls", a.balls, "K[,K2,...]", "how many; several make levels of detail in one file");
+  add(app, "--resume", a.resume, "FILE.json", "go on from the balls of such a file where it has as many");
+  const std::vector<ParamFlag> flags = fitParamFlags();
+  addParams(app, fitParamDocs(), flags, a.params);
+  add(app, "--report", a.report, "FILE.json", "the error of each level and the time it took")
+      ->group("Running");
+  add(app, "--threads", a.threads, "N", "processor threads; the result does not depend on it (default: all)")
+      ->group("Running");
 }
 
 void describeConvert(CLI::App* app, ConvertArgs& a) {
@@ -245,10 +271,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
 
   InfoArgs info;
   CLI::App* infoApp = root.add_subcommand(
-      "info", "Say what a file holds: a scene file with all its defaults, or a picture or volume");
+      "info", "Say what a file holds: a scene file with all its defaults, a picture or volume, or metaballs");
   infoApp
       ->add_option("file", info.file,
-                   "scene file .toml, picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
+                   "scene file .toml, picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb, "
+                   "metaballs .json")
       ->type_name("FILE");
   infoApp->add_flag("--json", info.json, "as JSON");
   infoApp->add_flag("--theme", info.theme,
@@ -263,6 +290,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
   CloudArgs cloud;
   CLI::App* cloudApp = root.add_subcommand("cloud", "Make a volume of cloud density in ellipsoids");
   describeCloud(cloudApp, cloud);
+
+  FitArgs fit;
+  CLI::App* fitApp =
+      root.add_subcommand("fit", "Make a cloud map into metaballs, and say how near they come");
+  describeFit(fitApp, fit);
 
   ConvertArgs convert;
   CLI::App* convertApp = root.add_subcommand(
@@ -297,7 +329,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
   refuseExtras(&root, "");
   if (chosen.empty())
     throw UsageError(
-        "expected a command: render, metar, sun, info, noise, cloud, convert, bench or help; welkin --help "
+        "expected a command: render, metar, sun, info, noise, cloud, fit, convert, bench or help; welkin "
+        "--help "
         "explains them");
   refuseExtras(chosen[0], chosen[0]->get_name());
   if (chosen[0] == renderApp) return render;
@@ -309,6 +342,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
   }
   if (chosen[0] == noiseApp) return noise;
   if (chosen[0] == cloudApp) return cloud;
+  if (chosen[0] == fitApp) return fit;
   if (chosen[0] == convertApp) return convert;
   if (chosen[0] == benchApp) return bench;
   if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};

@@ -59,9 +59,15 @@ struct NoiseArgs {
 
 struct CloudArgs {
   std::map<std::string, std::string> params;
-  Flag size, ellipsoids;
+  Flag size, ellipsoids, metaballs;
   bool cumulus = false;
   OutputArgs output;
+};
+
+struct FitArgs {
+  std::map<std::string, std::string> params;
+  std::string map;
+  Flag out, balls, resume, report, threads;
 };
 
 struct ConvertArgs {
@@ -83,8 +89,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, NoiseArgs, CloudArgs, ConvertArgs,
-                             BenchArgs, HelpSceneArgs, PrintText>;
+using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, NoiseArgs, CloudArgs, FitArgs,
+                             ConvertArgs, BenchArgs, HelpSceneArgs, PrintText>;
 
 // Throws UsageError, which names the nearest command or flag for one that does not exist.
 Command parseCommandLine(int argc, const char* const* argv);

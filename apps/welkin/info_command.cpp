@@ -12,6 +12,7 @@
 #include "usage_error.h"
 #include "welkin/io/texel_file.h"
 #include "welkin/io/vdb.h"
+#include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_json.h"
 #include "welkin/scene/scene_file.h"
 #include "welkin/scene/theme.h"
@@ -91,6 +92,33 @@ Json texelsJson(const std::string& path) {
   return j;
 }
 
+Json metaballsJson(const std::string& path) {
+  const scene::MetaballFile file = scene::readMetaballs(path);
+  const std::vector<field::Metaball>& balls = file.balls();
+  const field::Box box = field::boundsOf(balls);
+  const auto rangeOf = [&balls](double field::Metaball::* member) {
+    const auto [low, high] = std::minmax_element(
+        balls.begin(), balls.end(),
+        [member](const field::Metaball& a, const field::Metaball& b) { return a.*member < b.*member; });
+    return Json{{"min", (*low).*member}, {"max", (*high).*member}};
+  };
+  Json j = {{"holds", "metaballs"},
+            {"balls", balls.size()},
+            {"low_m", {box.low.x, box.low.y, box.low.z}},
+            {"high_m", {box.high.x, box.high.y, box.high.z}},
+            {"radius_m", rangeOf(&field::Metaball::radiusM)},
+            {"density", rangeOf(&field::Metaball::density)},
+            {"integral_m3", field::integralOf(balls)},
+            {"levels", Json::array()}};
+  for (const scene::MetaballLevel& level : file.levels) {
+    Json l = {{"balls", level.balls.size()}};
+    if (level.relativeL2) l["relative_l2"] = *level.relativeL2;
+    if (level.rmse) l["rmse"] = *level.rmse;
+    j["levels"].push_back(l);
+  }
+  return j;
+}
+
 void printPlain(const Json& j, int indent = 0) {
   for (const auto& [key, value] : j.items()) {
     fmt::print("{:{}}{}", "", indent, key);
@@ -131,13 +159,17 @@ int runInfo(const InfoArgs& args) {
     fmt::print("{}", args.json ? scene::toJson(s) + "\n" : scene::sceneToToml(s));
     return 0;
   }
+  Json j;
   try {
     io::texelFileKindOf(args.file);
   } catch (const ParameterError&) {
-    throw UsageError("info: " + args.file +
-                     ": unknown kind of file; expected .toml, .png, .exr, .hdr, .dds, .raw or .vdb");
+    if (extension == ".json")
+      j = metaballsJson(args.file);
+    else
+      throw UsageError("info: " + args.file +
+                       ": unknown kind of file; expected .toml, .png, .exr, .hdr, .dds, .raw, .vdb or .json");
   }
-  const Json j = texelsJson(args.file);
+  if (j.is_null()) j = texelsJson(args.file);
   if (args.json)
     fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
   else

@@ -12,6 +12,7 @@
 #include "cloud_command.h"
 #include "command_line.h"
 #include "convert_command.h"
+#include "fit_command.h"
 #include "help_command.h"
 #include "info_command.h"
 #include "metar_command.h"
@@ -36,6 +37,9 @@ int run(const NoiseArgs& args) {
 }
 int run(const CloudArgs& args) {
   return runCloud(args);
+}
+int run(const FitArgs& args) {
+  return runFit(args);
 }
 int run(const ConvertArgs& args) {
   return runConvert(args);

@@ -31,7 +31,7 @@ void ProgressLine::begin(std::string label) {
   std::fflush(stderr);
 }
 
-void ProgressLine::show(double fraction) {
+void ProgressLine::show(double fraction, std::string_view note) {
   const Clock::time_point now = Clock::now();
   if (!terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
@@ -40,6 +40,7 @@ void ProgressLine::show(double fraction) {
   // An estimate from the first moments would only be wrong.
   if (elapsed > 0.5 && fraction > 0.01)
     fmt::print(stderr, ", {} left", durationText(elapsed * (1.0 - fraction) / fraction));
+  if (!note.empty()) fmt::print(stderr, ", {}", note);
   fmt::print(stderr, "\033[K");
   std::fflush(stderr);
 }

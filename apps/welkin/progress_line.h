@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace welkin::app {
 
@@ -20,8 +21,9 @@ class ProgressLine {
 
   // Starts on a part of the work, whose time is estimated on its own: "drawing".
   void begin(std::string label);
-  // The fraction of that part that is done, in [0, 1]. Draws at most ten times a second.
-  void show(double fraction);
+  // The fraction of that part that is done, in [0, 1], and what else there is to say. Draws at most ten times
+  // a second.
+  void show(double fraction, std::string_view note = {});
   // A line of its own above it, on a terminal or not: "welkin: warning: ...".
   void warn(const std::string& what);
 

@@ -57,3 +57,4 @@ montage "$work"/cutoff_0.85.png "$work"/cutoff_0.78.png "$work"/cutoff_0.72.png 
 cp "$here/sky_box.toml" "$work/sky_box.toml"
 picture sky_box "$work/sky_box.toml" --size 960x540
 "$here/noise.sh" "$program"
+"$here/metaballs.sh" "$program"

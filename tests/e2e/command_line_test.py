@@ -114,7 +114,7 @@ class Info(ProgramTest):
     def test_mistakes(self):
         self.fail_with(1, "missing.toml", "info", "missing.toml")
         self.fail_with(1, "missing.png", "info", "missing.png")
-        self.fail_with(2, "unknown kind of file; expected .toml, .png, .exr, .hdr, .dds, .raw or .vdb", "info", "x.gif")
+        self.fail_with(2, "unknown kind of file; expected .toml, .png, .exr, .hdr, .dds, .raw, .vdb or .json", "info", "x.gif")
 
 
 if __name__ == "__main__":

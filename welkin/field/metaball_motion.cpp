@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/field/metaball_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "welkin/core/random.h"
+
+namespace welkin::field {
+namespace {
+
+constexpr double kLifeSpread = 0.3;
+constexpr double kLeastVolume = 1e-9;  // of a ball: below it there is none
+
+// Up from 0 to 1 in the first `fade` of a life, down in the last, its mean 1.
+double volumeAt(double age, double fade) {
+  const double edge = std::min(age, 1.0 - age);
+  const double t = fade > 0.0 ? std::clamp(edge / fade, 0.0, 1.0) : 1.0;
+  return t * t * (3.0 - 2.0 * t) / (1.0 - fade);
+}
+
+}  // namespace
+
+void describe(MetaballMotion& m, ParamVisitor& v) {
+  v.value({"wind_mps", "m/s", "wind of the cloud, east, north and up", -200, 200}, m.windMps);
+  v.value({"shear_per_s", "1/s", "wind that each metre of height adds", -1, 1}, m.shearPerS);
+  v.value({"reference_m", "m", "height at which the wind is the cloud's", -1e6, 1e6}, m.referenceM);
+  v.value({"life_s", "s", "life of a ball; 0: they stay", 0, 1e9}, m.lifeS);
+  v.value({"fade", "", "share of a life in which a ball grows, and in which it decays", 0, 0.5}, m.fade);
+  v.value({"seed", "", "other moments of birth", 0, 9007199254740992.0}, m.seed);
+}
+
+std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMotion& motion, double timeS) {
+  std::vector<Metaball> moved(balls.begin(), balls.end());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Metaball& b = moved[i];
+    const double height = b.centreM.z - motion.referenceM;
+    b.centreM += timeS * motion.windMps;
+    if (motion.lifeS <= 0.0) continue;
+    Random random(hashOf(static_cast<std::uint64_t>(motion.seed), 0x6d657461, i));
+    const double life = motion.lifeS * (1.0 + kLifeSpread * (2.0 * random.uniform() - 1.0));
+    const double lives = timeS / life + random.uniform();
+    const double age = lives - std::floor(lives);
+    b.centreM += (age - 0.5) * life * height * motion.shearPerS;
+    const double volume = volumeAt(age, motion.fade);
+    if (volume < kLeastVolume) b.density = 0.0;
+    b.radiusM *= std::cbrt(std::max(volume, kLeastVolume));
+  }
+  return moved;
+}
+
+}  // namespace welkin::field
