@@ -13,10 +13,9 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
 
+#include "welkin/noise/cell_near-inl.h"
 #include "welkin/noise/fill.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,14 +27,8 @@ class CellCubes {
   using D = hn::CappedTag<float, kTileX>;
   using V = hn::Vec<D>;
   static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-  static constexpr int kCube = 4;      // samples on an edge
-  static constexpr float kFar = 1e9f;  // where no point is
+  static constexpr int kCube = 4;  // samples on an edge
 
-  // The points that can matter in a tile, relative to its first cell; vectors may be read over the last.
-  struct Points {
-    const float* place[3];
-    int count;
-  };
   // A row of samples goes to out[(z * rows + y) * stride + x], x, y and z from the block's first.
   struct Output {
     float* out;
@@ -65,11 +58,11 @@ class CellCubes {
     rowsX_ = x;
     rowsY_ = y;
     for (float*& q : near_) q = scratch.take<float>(kCubes * (most + 2 * kLanes));
-    least_ = scratch.take<float>(most + 2 * kLanes);
+    squares_ = scratch.take<float>(most + 2 * kLanes);
   }
 
   // The tile from these samples on. Returns the square of the greatest distance.
-  HWY_INLINE float fillTile(int x, int y, int z, const Points& points, const Output& to) {
+  HWY_INLINE float fillTile(int x, int y, int z, const NearPoints& points, const Output& to) {
     const D d;
     // All that each cube needs first: one search does not wait for the one before, as a cube's values wait
     // for its search.
@@ -88,42 +81,18 @@ class CellCubes {
  private:
   static constexpr int kCubes = 8;  // of a tile
 
-  // Keeps the points whose least distance to the cube's box is not above the smallest of all greatest ones,
-  // from `to` in near_ on; returns their number.
-  HWY_INLINE int keepNear(int x, int y, int z, const Points& points, std::ptrdiff_t to) {
-    const D d;
+  // Keeps the points that matter in the cube from these samples on, from `to` in near_ on; returns their
+  // number.
+  HWY_INLINE int keepNear(int x, int y, int z, const NearPoints& points, std::ptrdiff_t to) {
     const int begin[3] = {x, y, z};
-    V lo[3], hi[3];
+    NearBox box;
     for (int a = 0; a < 3; ++a) {
-      lo[a] = hn::Set(d, place_[a][begin[a]]);
-      hi[a] = hn::Set(d, place_[a][begin[a] + kCube - 1]);
+      box.lo[a] = place_[a][begin[a]];
+      box.hi[a] = place_[a][begin[a] + kCube - 1];
     }
-    auto most = hn::Set(d, kFar);
-    float* HWY_RESTRICT least = least_;
-    for (int q = 0; q < points.count; q += kLanes) {
-      auto nearest = hn::Zero(d), farthest = hn::Zero(d);
-      for (int a = 0; a < 3; ++a) {
-        const auto p = hn::LoadU(d, points.place[a] + q);
-        const auto above = hn::Sub(p, hi[a]), below = hn::Sub(lo[a], p);
-        const auto near = hn::Max(hn::Max(above, below), hn::Zero(d));
-        const auto far = hn::Max(hn::Sub(hi[a], p), hn::Sub(p, lo[a]));
-        nearest = hn::MulAdd(near, near, nearest);
-        farthest = hn::MulAdd(far, far, farthest);
-      }
-      most = hn::Min(most, farthest);
-      hn::Store(nearest, d, least + q);
-    }
-    most = hn::Mul(hn::MinOfLanes(d, most), hn::Set(d, 1.00001f));
-    int count = 0;
-    for (int q = 0; q < points.count; q += kLanes) {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(hn::Load(d, least + q), most), bits);
-      const auto order = hn::SetTableIndices(d, kKeepFirst[bits[0] & ((1 << kLanes) - 1)].data());
-      for (int a = 0; a < 3; ++a)
-        hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, points.place[a] + q), order), d, near_[a] + to + count);
-      count += std::popcount(static_cast<unsigned>(bits[0]));
-    }
-    return count;
+    NearPoints kept{{near_[0] + to, near_[1] + to, near_[2] + to}, 0};
+    NearSearch<3>(box, squares_).keep(points, false, kept);
+    return kept.count;
   }
 
   // Vectors of a slice, and slices that fit the registers beside one another.
@@ -186,7 +155,7 @@ class CellCubes {
 
   const float *place_[3], *rowsX_, *rowsY_;  // of samples, relative to their tile's first cell
   float* near_[3];                           // places of what matters in each cube
-  float* least_;                             // squares of least distances
+  float* squares_;                           // of distances
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE
