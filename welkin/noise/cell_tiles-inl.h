@@ -46,10 +46,22 @@ class CellTiles {
     for (NearPoints* points : {&around_, &near_})
       for (float*& p : points->place) p = scratch.take<float>(most + 2 * kLanes);
     squares_ = scratch.take<float>(most + kLanes);
-    alongX_ = scratch.take<float>(most * kTileX);
-    for (float** rows : {&alongY_, &alongZ_, &beside_})
-      *rows = scratch.take<float>((most + kLanes) * kTileMost);
-    if (tables.cubes) cubes_ = CellCubes(tables, block, most, scratch);
+    if (tables.cubes) {
+      cubes_ = CellCubes(tables, block, most, scratch);
+      return;
+    }
+    for (float*& along : along_) along = scratch.take<float>(most * kTileMost);
+    beside_ = scratch.take<float>(most * kTileMost);
+    for (int a = 0; a < tables.lattice->axes(); ++a) {
+      const CellPlaces& p = axis(a);
+      const int tile = tables.tile[a];
+      inTile_[a] = scratch.take<float>(static_cast<std::size_t>(samples(a) + kTileMost));
+      for (int i = 0; i < samples(a); ++i) {
+        const int at = first(a) + i;
+        inTile_[a][i] = static_cast<float>(p.cell[at] - p.cell[at - i % tile]) + p.inside[at];
+      }
+      std::fill_n(inTile_[a] + samples(a), kTileMost, 0.0f);
+    }
   }
 
   // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
@@ -194,8 +206,6 @@ class CellTiles {
     for (int a = 0; a < kAxes; ++a) box.lo[a] = box_[a].lo, box.hi[a] = box_[a].hi;
     NearSearch<kAxes> search(box, squares_);
     search.keep(around_, second, near_);
-    // Far points follow, so that loops over these may take two or a vector at a time.
-    near_.count += near_.count % 2;
     return add_ ? search.bound(around_, second) : 0.0f;
   }
 
@@ -405,104 +415,100 @@ class CellTiles {
     return hn::Load(d, value);
   }
 
-  // Place of a sample relative to the tile's first cell.
-  float inTile(int a, int sample, int tile) const {
-    const CellPlaces& p = axis(a);
-    return static_cast<float>(p.cell[first(a) + sample] - p.cell[first(a) + tile]) +
-           p.inside[first(a) + sample];
-  }
-
-  // Squares of the distances on one axis from the points that matter to the samples of the tile: most_ a
-  // sample.
-  HWY_INLINE void squaresOn(int a, int tile, float* out) const {
+  // Squares of the distances on one axis from the points that matter to the samples of the tile: kTileMost a
+  // point.
+  HWY_INLINE void squaresOn(int a, int tile) const {
     const D d;
-    for (int i = 0; i < tables_.tile[a]; ++i, out += most_) {
-      const auto p = hn::Set(d, inTile(a, tile + i, tile));
-      for (int q = 0; q < near_.count; q += kLanes) {
-        const auto away = hn::Sub(hn::LoadU(d, near_.place[a] + q), p);
-        hn::Store(hn::Mul(away, away), d, out + q);
+    const float* HWY_RESTRICT near = near_.place[a];
+    float* HWY_RESTRICT out = along_[a];
+    for (int v = 0; v < kTileMost; v += kLanes) {
+      const auto p = hn::LoadU(d, inTile_[a] + tile + v);
+      for (int q = 0, count = near_.count; q < count; ++q) {
+        const auto away = hn::Sub(hn::Set(d, near[q]), p);
+        hn::Store(hn::Mul(away, away), d, out + q * kTileMost + v);
       }
     }
   }
 
   // Returns the square of the greatest distance that decided over a sample.
   float fillTile(Feature feature, int x, int y, int z) {
+    const bool few = tables_.tile[1] <= 4;
     switch (feature) {
       case Feature::kF1:
-        return fillTileAs<Feature::kF1>(x, y, z);
+        return few ? fillTileAs<Feature::kF1, 4>(x, y, z) : fillTileAs<Feature::kF1, 8>(x, y, z);
       case Feature::kF2:
-        return fillTileAs<Feature::kF2>(x, y, z);
+        return fillTileAs<Feature::kF2, 4>(x, y, z);
       case Feature::kF2MinusF1:
         break;
     }
-    return fillTileAs<Feature::kF2MinusF1>(x, y, z);
+    return fillTileAs<Feature::kF2MinusF1, 4>(x, y, z);
   }
 
-  template <Feature kFeature>
+  // kRows rows share the loads; in a tile of fewer some are done in vain.
+  template <Feature kFeature, int kRows>
   HWY_INLINE float fillTileAs(int x, int y, int z) {
     const D d;
-    const DI di;
     const bool solid = tables_.lattice->axes() == 3;
-    const int rows = tables_.tile[1];
-    const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
+    const int rows = tables_.tile[1], slices = tables_.tile[2], count = near_.count;
+    const std::ptrdiff_t stride = outStride_;
+    squaresOn(0, x);
+    squaresOn(1, y);
+    if (solid) squaresOn(2, z);
+    const float* HWY_RESTRICT const alongX = along_[0];
+    const float* HWY_RESTRICT const alongY = along_[1];
+    const float* HWY_RESTRICT const alongZ = along_[2];
+    const Put<kFeature> put{hn::Set(d, weight_), hn::Set(d, bias_), add_};
     auto greatest = hn::Zero(d);
-    most_ = (near_.count + kLanes - 1) / kLanes * kLanes;
-    squaresOn(1, y, alongY_);
-    if (solid) squaresOn(2, z, alongZ_);
-    for (int i = 0; i < kTileX; i += kLanes) {
-      const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
-      const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
-      for (int q = 0; q < near_.count; ++q) {
-        const auto dx = hn::Sub(hn::Set(d, near_.place[0][q]), px);
-        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * kLanes);
-      }
-      for (int s = 0; s < tables_.tile[2]; ++s) {
-        const float* HWY_RESTRICT beside = alongY_;
-        if (solid) {
-          // All rows before the first is needed: what is stored as vectors is read number by number.
-          for (int q = 0; q < near_.count; q += kLanes) {
-            const auto dz = hn::Load(d, alongZ_ + s * most_ + q);
-            for (int r = 0; r < rows; ++r)
-              hn::Store(hn::Add(hn::Load(d, alongY_ + r * most_ + q), dz), d, beside_ + r * most_ + q);
-          }
-          beside = beside_;
+    for (int s = 0; s < slices; ++s) {
+      const float* HWY_RESTRICT beside = alongY;
+      if (solid) {
+        // All rows before the first is needed: what is stored as vectors is read number by number.
+        for (int q = 0; q < count; ++q) {
+          const auto dz = hn::Set(d, alongZ[q * kTileMost + s]);
+          for (int v = 0; v < kTileMost; v += kLanes)
+            hn::Store(hn::Add(hn::Load(d, alongY + q * kTileMost + v), dz), d, beside_ + q * kTileMost + v);
         }
-        float* out = out_ + (static_cast<std::ptrdiff_t>(z + s) * block_.rows + y) * outStride_ + x + i;
-        for (int r = 0; r < rows; r += 4, out += std::ptrdiff_t{4} * outStride_) {
-          // Four rows share the loads; in a tile of fewer some are done in vain.
-          const float* HWY_RESTRICT of[4];
-          for (int k = 0; k < 4; ++k) of[k] = beside + std::min(r + k, rows - 1) * most_;
-          V first[4], second[4];
-          for (int k = 0; k < 4; ++k) first[k] = second[k] = hn::Set(d, kFar);
-          for (int q = 0; q < near_.count; q += 2)
-            for (int p = q; p < q + 2; ++p) {
-              const auto dx = hn::Load(d, alongX_ + p * kLanes);
-              for (int k = 0; k < 4; ++k) {
-                const auto square = hn::Add(dx, hn::Set(d, of[k][p]));
-                if constexpr (kFeature != Feature::kF1)
-                  second[k] = hn::Min(second[k], hn::Max(first[k], square));
-                first[k] = hn::Min(first[k], square);
-              }
+        beside = beside_;
+      }
+      float* slice = out_ + (static_cast<std::ptrdiff_t>(z + s) * block_.rows + y) * stride + x;
+      for (int i = 0; i < kTileX; i += kLanes)
+        for (int r = 0; r < rows; r += kRows) {
+          V first[kRows], second[kRows];
+          for (int k = 0; k < kRows; ++k) first[k] = second[k] = hn::Set(d, kFar);
+          for (int q = 0; q < count; ++q) {
+            const auto dx = hn::Load(d, alongX + q * kTileMost + i);
+            const float* HWY_RESTRICT row = beside + q * kTileMost + r;
+            for (int k = 0; k < kRows; ++k) {
+              const auto square = hn::Add(dx, hn::Set(d, row[k]));
+              if constexpr (kFeature != Feature::kF1)
+                second[k] = hn::Min(second[k], hn::Max(first[k], square));
+              first[k] = hn::Min(first[k], square);
             }
-          for (int k = 0; k < 4; ++k) {
+          }
+          float* out = slice + r * stride + i;
+          for (int k = 0; k < kRows; ++k, out += stride) {
+            if (kRows < kTileMost && r + k >= rows) break;
             greatest = hn::Max(greatest, kFeature == Feature::kF1 ? first[k] : second[k]);
-            if (r + k < rows)
-              put<kFeature>(first[k], second[k], out + static_cast<std::ptrdiff_t>(k) * outStride_);
+            put(first[k], second[k], out);
           }
         }
-      }
     }
     return hn::GetLane(hn::MaxOfLanes(d, greatest));
   }
 
   template <Feature kFeature>
-  HWY_INLINE void put(V first, V second, float* out) const {
-    const D d;
-    auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
-    if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
-    const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
-    hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
-  }
+  struct Put {
+    V weight, bias;
+    bool add;
+
+    HWY_INLINE void operator()(V first, V second, float* out) const {
+      const D d;
+      auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+      if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
+      const auto sum = add ? hn::LoadU(d, out) : bias;
+      hn::StoreU(hn::MulAdd(weight, value, sum), d, out);
+    }
+  };
 
   const CellTables& tables_;
   const Block block_;
@@ -511,12 +517,12 @@ class CellTiles {
   float* points_[3] = {};                             // within their cells
   Extent box_[3];
   NearPoints around_,
-      near_;        // relative to the tile's first cell: the points about it, those that matter in it
-  float* squares_;  // of distances, of the points about the tile
-  // Squares of distances of the points that matter: to a vector of samples in x; to the rows in y and the
-  // slices in z, most_ apart; to the rows of a slice in y and z.
-  float *alongX_, *alongY_, *alongZ_, *beside_;
-  std::ptrdiff_t most_ = 0;
+      near_;               // relative to the tile's first cell: the points about it, those that matter in it
+  float* squares_;         // of distances, of the points about the tile
+  float* inTile_[3] = {};  // by axis, places of samples relative to their tile's first cell
+  // Squares of distances of the points that matter, kTileMost a point: on each axis to the tile's samples; to
+  // the rows of a slice in y and z.
+  float *along_[3] = {}, *beside_;
   int seen_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
   HWY_ALIGN float seenX_[28 * kTileX], seenY_[28 * kTileX], seenZ_[28 * kTileX];
   float* out_ = nullptr;
