@@ -76,8 +76,8 @@ class CellTiles {
     if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
     for (int z = 0; z < block_.slices; z += tz)
-      for (int y = 0; y < block_.rows; y += ty)
-        for (int x = 0; x < block_.width; x += kTileX) {
+      for (int x = 0; x < block_.width; x += kTileX)
+        for (int y = 0; y < block_.rows; y += ty) {
           const float safe = findNear(x, y, z, feature != Feature::kF1);
           if (fillTile(feature, x, y, z) <= safe) continue;
           // Some sample's point may be farther than those that were looked at.
@@ -209,9 +209,20 @@ class CellTiles {
     return add_ ? search.bound(around_, second) : 0.0f;
   }
 
+  // The cells of a tile and how far around.
+  struct Gathered {
+    int reach = -1, first[3] = {}, more[3] = {};
+    bool operator==(const Gathered&) const = default;
+  };
+
   // Places of all points at most `reach` cells from the tile's, relative to its first.
   void gather(int reach) {
     const D d;
+    // Tiles one after the other often lie in the same cells.
+    const Gathered cells{
+        reach, {box_[0].cell, box_[1].cell, box_[2].cell}, {box_[0].cells, box_[1].cells, box_[2].cells}};
+    if (cells == gathered_) return;
+    gathered_ = cells;
     const int deep = tables_.lattice->axes() == 3 ? reach : 0, across = box_[0].cells + 1 + 2 * reach;
     int count = 0;
     for (int k = -deep; k <= box_[2].cells + deep; ++k)
@@ -516,6 +527,7 @@ class CellTiles {
   int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
   float* points_[3] = {};                             // within their cells
   Extent box_[3];
+  Gathered gathered_;
   NearPoints around_,
       near_;               // relative to the tile's first cell: the points about it, those that matter in it
   float* squares_;         // of distances, of the points about the tile
