@@ -52,8 +52,9 @@ class NearSearch {
   NearSearch(const NearBox& box, float* squares) : squares_(squares) {
     const D d;
     for (int a = 0; a < kAxes; ++a) {
-      middle_[a] = 0.5f * (box.lo[a] + box.hi[a]);
-      edge_[a] = hn::Set(d, box.hi[a] - box.lo[a]);
+      const auto lo = hn::Set(d, box.lo[a]), hi = hn::Set(d, box.hi[a]);
+      middle_[a] = hn::Mul(hn::Set(d, 0.5f), hn::Add(lo, hi));
+      edge_[a] = hn::Sub(hi, lo);
     }
   }
 
@@ -93,7 +94,8 @@ class NearSearch {
     for (int n = 0; n < (second ? 2 : 1); ++n) {
       float square = 0.0f;
       for (int a = 0; a < kAxes; ++a) {
-        const float away = std::abs(from.place[a][nearest_[n]] - middle_[a]) + 0.5f * hn::GetLane(edge_[a]);
+        const float middle = hn::GetLane(middle_[a]), half = 0.5f * hn::GetLane(edge_[a]);
+        const float away = std::abs(from.place[a][nearest_[n]] - middle) + half;
         square += away * away;
       }
       most = std::max(most, square);
@@ -109,15 +111,13 @@ class NearSearch {
   HWY_INLINE void findTwo(const NearPoints& from) {
     const D d;
     const DU du;
-    V middle[kAxes];
-    for (int a = 0; a < kAxes; ++a) middle[a] = hn::Set(d, middle_[a]);
     auto number = hn::Iota(du, 0);
     auto first = hn::Set(du, 0x7f000000u), second = first;
     for (int i = 0; i < from.count; i += kLanes) {
-      auto away = hn::Sub(hn::LoadU(d, from.place[0] + i), middle[0]);
+      auto away = hn::Sub(hn::LoadU(d, from.place[0] + i), middle_[0]);
       auto square = hn::Mul(away, away);
       for (int a = 1; a < kAxes; ++a) {
-        away = hn::Sub(hn::LoadU(d, from.place[a] + i), middle[a]);
+        away = hn::Sub(hn::LoadU(d, from.place[a] + i), middle_[a]);
         square = hn::MulAdd(away, away, square);
       }
       hn::Store(square, d, squares_ + i);
@@ -139,8 +139,7 @@ class NearSearch {
   }
 
   float* squares_;  // of the distances from the middle
-  float middle_[kAxes];
-  V edge_[kAxes];
+  V middle_[kAxes], edge_[kAxes];
   std::uint32_t nearest_[2];
 };
 
