@@ -29,14 +29,6 @@ class CellCubes {
   static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
   static constexpr int kCube = 4;  // samples on an edge
 
-  // A row of samples goes to out[(z * rows + y) * stride + x], x, y and z from the block's first.
-  struct Output {
-    float* out;
-    int stride, rows;
-    float weight, bias;
-    bool add;
-  };
-
   CellCubes() = default;
   // `most` points at most.
   CellCubes(const CellTables& tables, const Block& block, std::size_t most, Scratch& scratch) {
@@ -62,7 +54,7 @@ class CellCubes {
   }
 
   // The tile from these samples on. Returns the square of the greatest distance.
-  HWY_INLINE float fillTile(int x, int y, int z, const NearPoints& points, const Output& to) {
+  HWY_INLINE float fillTile(int x, int y, int z, const NearPoints& points, const CellOutput& to) {
     const D d;
     // All that each cube needs first: one search does not wait for the one before, as a cube's values wait
     // for its search.
@@ -98,7 +90,7 @@ class CellCubes {
   // Vectors of a slice, and slices that fit the registers beside one another.
   static constexpr int kVectors = kCube * kCube / kLanes, kSlices = kLanes == 8 ? 4 : 2;
 
-  HWY_INLINE V fillCube(int x, int y, int z, std::ptrdiff_t from, int count, const Output& to) const {
+  HWY_INLINE V fillCube(int x, int y, int z, std::ptrdiff_t from, int count, const CellOutput& to) const {
     const D d;
     const float* HWY_RESTRICT near[3] = {near_[0] + from, near_[1] + from, near_[2] + from};
     const auto px = hn::Load(d, rowsX_ + std::ptrdiff_t{x / kCube} * kLanes);
@@ -126,8 +118,8 @@ class CellCubes {
         }
       }
       for (int k = 0; k < kSlices; ++k) {
-        float* out = to.out + (static_cast<std::ptrdiff_t>(s + k) * to.rows + y) * to.stride + x;
-        for (int v = 0; v < kVectors; ++v, out += static_cast<std::ptrdiff_t>(kLanes / kCube) * to.stride) {
+        float* out = to.at(x, y, s + k);
+        for (int v = 0; v < kVectors; ++v, out += kLanes / kCube * to.row) {
           greatest = hn::Max(greatest, least[k][v]);
           put(hn::Sqrt(least[k][v]), to, out);
         }
@@ -138,19 +130,14 @@ class CellCubes {
 
   // One or two rows of four values. A template, so that what does not fit the vectors is not compiled.
   template <class Values>
-  static HWY_INLINE void put(Values value, const Output& to, float* out) {
-    if constexpr (kLanes == 2 * kCube) {
-      putRow(hn::LowerHalf(hn::Half<D>(), value), to, out);
-      putRow(hn::UpperHalf(hn::Half<D>(), value), to, out + to.stride);
-    } else {
-      putRow(value, to, out);
-    }
-  }
-  template <class Values>
-  static HWY_INLINE void putRow(Values value, const Output& to, float* out) {
+  static HWY_INLINE void put(Values value, const CellOutput& to, float* out) {
     const hn::CappedTag<float, kCube> d;
-    const auto sum = to.add ? hn::LoadU(d, out) : hn::Set(d, to.bias);
-    hn::StoreU(hn::MulAdd(hn::Set(d, to.weight), value, sum), d, out);
+    if constexpr (kLanes == 2 * kCube) {
+      to.put(d, hn::LowerHalf(d, value), out);
+      to.put(d, hn::UpperHalf(d, value), out + to.row);
+    } else {
+      to.put(d, value, out);
+    }
   }
 
   const float *place_[3], *rowsX_, *rowsY_;  // of samples, relative to their tile's first cell

@@ -39,6 +39,26 @@ struct NearBox {
   float lo[3], hi[3];
 };
 
+// Where values go: sample x of row y and slice z to out[z * slice + y * row + x].
+struct CellOutput {
+  float* out;
+  std::ptrdiff_t row, slice;
+  float weight, bias;  // weight times the value is added to the bias, or (add) to what is there,
+  bool add;
+  bool clamps;  // and clamped
+  float low, high;
+
+  HWY_INLINE float* at(int x, int y, int z) const { return out + z * slice + y * row + x; }
+
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE void put(D d, V value, float* to) const {
+    const auto sum = add ? hn::LoadU(d, to) : hn::Set(d, bias);
+    value = hn::MulAdd(hn::Set(d, weight), value, sum);
+    if (clamps) value = hn::Clamp(value, hn::Set(d, low), hn::Set(d, high));
+    hn::StoreU(value, d, to);
+  }
+};
+
 template <int kAxes>
 class NearSearch {
  public:

@@ -64,14 +64,8 @@ class CellTiles {
     }
   }
 
-  // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
-  // there.
-  void fill(Feature feature, float weight, float bias, bool add, float* out, int stride) {
-    out_ = out;
-    outStride_ = stride;
-    weight_ = weight;
-    bias_ = bias;
-    add_ = add;
+  void fill(Feature feature, const CellOutput& to) {
+    to_ = to;
     if (tables_.cubes) return fillCubes();
     if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
@@ -88,7 +82,7 @@ class CellTiles {
 
  private:
   void fillCubes() {
-    const CellCubes::Output to{out_, outStride_, block_.rows, weight_, bias_, add_};
+    const CellOutput to = to_;
     const auto tile = [&](int x, int y, int z) HWY_ATTR { return cubes_.fillTile(x, y, z, near_, to); };
     for (int z = 0; z < block_.slices; z += kTileMost)
       for (int y = 0; y < block_.rows; y += kTileMost)
@@ -188,7 +182,7 @@ class CellTiles {
     for (int a = 0; a < tables_.lattice->axes(); ++a)
       margin = std::min({margin, box_[a].lo, static_cast<float>(box_[a].cells + 1) - box_[a].hi});
     const float safe = (1.0f + std::max(margin, 0.0f)) * (1.0f + std::max(margin, 0.0f));
-    if (collect(1, second) <= safe || !add_) return safe;
+    if (collect(1, second) <= safe || !to_.add) return safe;
     collect(kCellReach, second);
     return kFar;
   }
@@ -206,7 +200,7 @@ class CellTiles {
     for (int a = 0; a < kAxes; ++a) box.lo[a] = box_[a].lo, box.hi[a] = box_[a].hi;
     NearSearch<kAxes> search(box, squares_);
     search.keep(around_, second, near_);
-    return add_ ? search.bound(around_, second) : 0.0f;
+    return to_.add ? search.bound(around_, second) : 0.0f;
   }
 
   // The cells of a tile and how far around.
@@ -389,9 +383,7 @@ class CellTiles {
       auto value = hn::Sqrt(least);
       // Points beyond the cells around are farther than 1; so, rarely, is the nearest of these.
       if (!hn::AllTrue(d, hn::Le(least, hn::Set(d, 1.0f)))) value = exactly(x, r, s, value);
-      float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
-      const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
-      hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
+      to_.put(d, value, to_.at(x, r, s));
     }
   }
 
@@ -461,14 +453,13 @@ class CellTiles {
     const D d;
     const bool solid = tables_.lattice->axes() == 3;
     const int rows = tables_.tile[1], slices = tables_.tile[2], count = near_.count;
-    const std::ptrdiff_t stride = outStride_;
+    const CellOutput to = to_;
     squaresOn(0, x);
     squaresOn(1, y);
     if (solid) squaresOn(2, z);
     const float* HWY_RESTRICT const alongX = along_[0];
     const float* HWY_RESTRICT const alongY = along_[1];
     const float* HWY_RESTRICT const alongZ = along_[2];
-    const Put<kFeature> put{hn::Set(d, weight_), hn::Set(d, bias_), add_};
     auto greatest = hn::Zero(d);
     for (int s = 0; s < slices; ++s) {
       const float* HWY_RESTRICT beside = alongY;
@@ -481,7 +472,6 @@ class CellTiles {
         }
         beside = beside_;
       }
-      float* slice = out_ + (static_cast<std::ptrdiff_t>(z + s) * block_.rows + y) * stride + x;
       for (int i = 0; i < kTileX; i += kLanes)
         for (int r = 0; r < rows; r += kRows) {
           V first[kRows], second[kRows];
@@ -496,11 +486,11 @@ class CellTiles {
               first[k] = hn::Min(first[k], square);
             }
           }
-          float* out = slice + r * stride + i;
-          for (int k = 0; k < kRows; ++k, out += stride) {
+          float* out = to.at(x + i, y + r, z + s);
+          for (int k = 0; k < kRows; ++k, out += to.row) {
             if (kRows < kTileMost && r + k >= rows) break;
             greatest = hn::Max(greatest, kFeature == Feature::kF1 ? first[k] : second[k]);
-            put(first[k], second[k], out);
+            to.put(d, value<kFeature>(first[k], second[k]), out);
           }
         }
     }
@@ -508,18 +498,10 @@ class CellTiles {
   }
 
   template <Feature kFeature>
-  struct Put {
-    V weight, bias;
-    bool add;
-
-    HWY_INLINE void operator()(V first, V second, float* out) const {
-      const D d;
-      auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
-      if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
-      const auto sum = add ? hn::LoadU(d, out) : bias;
-      hn::StoreU(hn::MulAdd(weight, value, sum), d, out);
-    }
-  };
+  static HWY_INLINE V value(V first, V second) {
+    const auto distance = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+    return kFeature == Feature::kF2MinusF1 ? hn::Sub(hn::Sqrt(second), distance) : distance;
+  }
 
   const CellTables& tables_;
   const Block block_;
@@ -537,10 +519,7 @@ class CellTiles {
   float *along_[3] = {}, *beside_;
   int seen_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
   HWY_ALIGN float seenX_[28 * kTileX], seenY_[28 * kTileX], seenZ_[28 * kTileX];
-  float* out_ = nullptr;
-  int outStride_ = 0;
-  float weight_ = 1.0f, bias_ = 0.0f;
-  bool add_ = false;
+  CellOutput to_{};
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE
