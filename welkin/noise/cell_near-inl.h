@@ -52,9 +52,8 @@ struct CellOutput {
 
   template <class D, class V = hn::Vec<D>>
   HWY_INLINE void put(D d, V value, float* to) const {
-    const auto sum = add ? hn::LoadU(d, to) : hn::Set(d, bias);
-    value = hn::MulAdd(hn::Set(d, weight), value, sum);
-    if (clamps) value = hn::Clamp(value, hn::Set(d, low), hn::Set(d, high));
+    value = hn::MulAdd(hn::Set(d, weight), value, add ? hn::LoadU(d, to) : hn::Set(d, bias));
+    if (HWY_UNLIKELY(clamps)) value = hn::Clamp(value, hn::Set(d, low), hn::Set(d, high));
     hn::StoreU(value, d, to);
   }
 };
