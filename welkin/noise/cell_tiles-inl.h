@@ -69,8 +69,8 @@ class CellTiles {
     if (tables_.cubes) return fillCubes();
     if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
-    for (int z = 0; z < block_.slices; z += tz)
-      for (int x = 0; x < block_.width; x += kTileX)
+    for (int x = 0; x < block_.width; x += kTileX)
+      for (int z = 0; z < block_.slices; z += tz)
         for (int y = 0; y < block_.rows; y += ty) {
           const float safe = findNear(x, y, z, feature != Feature::kF1);
           if (fillTile(feature, x, y, z) <= safe) continue;
