@@ -13,10 +13,9 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
 
+#include "welkin/noise/cell_near-inl.h"
 #include "welkin/noise/fill.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,21 +27,7 @@ class CellCubes {
   using D = hn::CappedTag<float, kTileX>;
   using V = hn::Vec<D>;
   static constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-  static constexpr int kCube = 4;      // samples on an edge
-  static constexpr float kFar = 1e9f;  // where no point is
-
-  // The points that can matter in a tile, relative to its first cell; vectors may be read over the last.
-  struct Points {
-    const float* place[3];
-    int count;
-  };
-  // A row of samples goes to out[(z * rows + y) * stride + x], x, y and z from the block's first.
-  struct Output {
-    float* out;
-    int stride, rows;
-    float weight, bias;
-    bool add;
-  };
+  static constexpr int kCube = 4;  // samples on an edge
 
   CellCubes() = default;
   // `most` points at most.
@@ -65,11 +50,11 @@ class CellCubes {
     rowsX_ = x;
     rowsY_ = y;
     for (float*& q : near_) q = scratch.take<float>(kCubes * (most + 2 * kLanes));
-    least_ = scratch.take<float>(most + 2 * kLanes);
+    squares_ = scratch.take<float>(most + 2 * kLanes);
   }
 
   // The tile from these samples on. Returns the square of the greatest distance.
-  HWY_INLINE float fillTile(int x, int y, int z, const Points& points, const Output& to) {
+  HWY_INLINE float fillTile(int x, int y, int z, const NearPoints& points, const CellOutput& to) {
     const D d;
     // All that each cube needs first: one search does not wait for the one before, as a cube's values wait
     // for its search.
@@ -88,48 +73,24 @@ class CellCubes {
  private:
   static constexpr int kCubes = 8;  // of a tile
 
-  // Keeps the points whose least distance to the cube's box is not above the smallest of all greatest ones,
-  // from `to` in near_ on; returns their number.
-  HWY_INLINE int keepNear(int x, int y, int z, const Points& points, std::ptrdiff_t to) {
-    const D d;
+  // Keeps the points that matter in the cube from these samples on, from `to` in near_ on; returns their
+  // number.
+  HWY_INLINE int keepNear(int x, int y, int z, const NearPoints& points, std::ptrdiff_t to) {
     const int begin[3] = {x, y, z};
-    V lo[3], hi[3];
+    NearBox box;
     for (int a = 0; a < 3; ++a) {
-      lo[a] = hn::Set(d, place_[a][begin[a]]);
-      hi[a] = hn::Set(d, place_[a][begin[a] + kCube - 1]);
+      box.lo[a] = place_[a][begin[a]];
+      box.hi[a] = place_[a][begin[a] + kCube - 1];
     }
-    auto most = hn::Set(d, kFar);
-    float* HWY_RESTRICT least = least_;
-    for (int q = 0; q < points.count; q += kLanes) {
-      auto nearest = hn::Zero(d), farthest = hn::Zero(d);
-      for (int a = 0; a < 3; ++a) {
-        const auto p = hn::LoadU(d, points.place[a] + q);
-        const auto above = hn::Sub(p, hi[a]), below = hn::Sub(lo[a], p);
-        const auto near = hn::Max(hn::Max(above, below), hn::Zero(d));
-        const auto far = hn::Max(hn::Sub(hi[a], p), hn::Sub(p, lo[a]));
-        nearest = hn::MulAdd(near, near, nearest);
-        farthest = hn::MulAdd(far, far, farthest);
-      }
-      most = hn::Min(most, farthest);
-      hn::Store(nearest, d, least + q);
-    }
-    most = hn::Mul(hn::MinOfLanes(d, most), hn::Set(d, 1.00001f));
-    int count = 0;
-    for (int q = 0; q < points.count; q += kLanes) {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(hn::Load(d, least + q), most), bits);
-      const auto order = hn::SetTableIndices(d, kKeepFirst[bits[0] & ((1 << kLanes) - 1)].data());
-      for (int a = 0; a < 3; ++a)
-        hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, points.place[a] + q), order), d, near_[a] + to + count);
-      count += std::popcount(static_cast<unsigned>(bits[0]));
-    }
-    return count;
+    NearPoints kept{{near_[0] + to, near_[1] + to, near_[2] + to}, 0};
+    NearSearch<3>(box, squares_).keep(points, false, kept);
+    return kept.count;
   }
 
   // Vectors of a slice, and slices that fit the registers beside one another.
   static constexpr int kVectors = kCube * kCube / kLanes, kSlices = kLanes == 8 ? 4 : 2;
 
-  HWY_INLINE V fillCube(int x, int y, int z, std::ptrdiff_t from, int count, const Output& to) const {
+  HWY_INLINE V fillCube(int x, int y, int z, std::ptrdiff_t from, int count, const CellOutput& to) const {
     const D d;
     const float* HWY_RESTRICT near[3] = {near_[0] + from, near_[1] + from, near_[2] + from};
     const auto px = hn::Load(d, rowsX_ + std::ptrdiff_t{x / kCube} * kLanes);
@@ -157,8 +118,8 @@ class CellCubes {
         }
       }
       for (int k = 0; k < kSlices; ++k) {
-        float* out = to.out + (static_cast<std::ptrdiff_t>(s + k) * to.rows + y) * to.stride + x;
-        for (int v = 0; v < kVectors; ++v, out += static_cast<std::ptrdiff_t>(kLanes / kCube) * to.stride) {
+        float* out = to.at(x, y, s + k);
+        for (int v = 0; v < kVectors; ++v, out += kLanes / kCube * to.row) {
           greatest = hn::Max(greatest, least[k][v]);
           put(hn::Sqrt(least[k][v]), to, out);
         }
@@ -169,24 +130,19 @@ class CellCubes {
 
   // One or two rows of four values. A template, so that what does not fit the vectors is not compiled.
   template <class Values>
-  static HWY_INLINE void put(Values value, const Output& to, float* out) {
-    if constexpr (kLanes == 2 * kCube) {
-      putRow(hn::LowerHalf(hn::Half<D>(), value), to, out);
-      putRow(hn::UpperHalf(hn::Half<D>(), value), to, out + to.stride);
-    } else {
-      putRow(value, to, out);
-    }
-  }
-  template <class Values>
-  static HWY_INLINE void putRow(Values value, const Output& to, float* out) {
+  static HWY_INLINE void put(Values value, const CellOutput& to, float* out) {
     const hn::CappedTag<float, kCube> d;
-    const auto sum = to.add ? hn::LoadU(d, out) : hn::Set(d, to.bias);
-    hn::StoreU(hn::MulAdd(hn::Set(d, to.weight), value, sum), d, out);
+    if constexpr (kLanes == 2 * kCube) {
+      to.put(d, hn::LowerHalf(d, value), out);
+      to.put(d, hn::UpperHalf(d, value), out + to.row);
+    } else {
+      to.put(d, value, out);
+    }
   }
 
   const float *place_[3], *rowsX_, *rowsY_;  // of samples, relative to their tile's first cell
   float* near_[3];                           // places of what matters in each cube
-  float* least_;                             // squares of least distances
+  float* squares_;                           // of distances
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE

@@ -2,9 +2,8 @@
 // Blocks of cellular noise. Compiled for every instruction set.
 //
 // A block is cut into tiles of 8 samples along x by a few rows and slices, small against a cell. For each
-// tile the feature points that can be nearest to any of its samples are found first: those whose least
-// distance to the tile's box is not above the smallest of all points' greatest distances. Some four are left
-// of 27 or more, and the samples look at these alone. The result is exact.
+// tile the feature points that can be nearest to any of its samples are found first (cell_near-inl.h). Some
+// four are left of 27 or more, and the samples look at these alone. The result is exact.
 //
 // Where samples are 3 to 10 to a cell, tiles are 8 in each direction and cut again (cell_cubes-inl.h).
 //
@@ -20,11 +19,11 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
 #include "welkin/noise/cell_cubes-inl.h"
+#include "welkin/noise/cell_near-inl.h"
 #include "welkin/noise/fill.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,29 +43,35 @@ class CellTiles {
   CellTiles(const CellTables& tables, const Block& block, Scratch& scratch) : tables_(tables), block_(block) {
     makePoints(scratch);
     const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
-    for (auto& q : near_) q = scratch.take<float>(most + 2 * kLanes);
-    away_ = scratch.take<float>(most);
-    alongX_ = scratch.take<float>(most * kTileX);
-    for (float** rows : {&alongY_, &alongZ_, &beside_})
-      *rows = scratch.take<float>((most + kLanes) * kTileMost);
-    runs_ = scratch.take<Run>(most / std::size_t{kLanes} + 1);
-    if (tables.cubes) cubes_ = CellCubes(tables, block, most, scratch);
+    for (NearPoints* points : {&around_, &near_})
+      for (float*& p : points->place) p = scratch.take<float>(most + 2 * kLanes);
+    squares_ = scratch.take<float>(most + kLanes);
+    if (tables.cubes) {
+      cubes_ = CellCubes(tables, block, most, scratch);
+      return;
+    }
+    for (float*& along : along_) along = scratch.take<float>(most * kTileMost);
+    beside_ = scratch.take<float>(most * kTileMost);
+    for (int a = 0; a < tables.lattice->axes(); ++a) {
+      const CellPlaces& p = axis(a);
+      const int tile = tables.tile[a];
+      inTile_[a] = scratch.take<float>(static_cast<std::size_t>(samples(a) + kTileMost));
+      for (int i = 0; i < samples(a); ++i) {
+        const int at = first(a) + i;
+        inTile_[a][i] = static_cast<float>(p.cell[at] - p.cell[at - i % tile]) + p.inside[at];
+      }
+      std::fill_n(inTile_[a] + samples(a), kTileMost, 0.0f);
+    }
   }
 
-  // out[(z * rows + y) * stride + x]: weight times the distance is added to the bias, or (add) to what is
-  // there.
-  void fill(Feature feature, float weight, float bias, bool add, float* out, int stride) {
-    out_ = out;
-    outStride_ = stride;
-    weight_ = weight;
-    bias_ = bias;
-    add_ = add;
+  void fill(Feature feature, const CellOutput& to) {
+    to_ = to;
     if (tables_.cubes) return fillCubes();
     if (tables_.dense && feature == Feature::kF1) return fillDense();
     const int ty = tables_.tile[1], tz = tables_.tile[2];
-    for (int z = 0; z < block_.slices; z += tz)
-      for (int y = 0; y < block_.rows; y += ty)
-        for (int x = 0; x < block_.width; x += kTileX) {
+    for (int x = 0; x < block_.width; x += kTileX)
+      for (int z = 0; z < block_.slices; z += tz)
+        for (int y = 0; y < block_.rows; y += ty) {
           const float safe = findNear(x, y, z, feature != Feature::kF1);
           if (fillTile(feature, x, y, z) <= safe) continue;
           // Some sample's point may be farther than those that were looked at.
@@ -77,10 +82,8 @@ class CellTiles {
 
  private:
   void fillCubes() {
-    const CellCubes::Output to{out_, outStride_, block_.rows, weight_, bias_, add_};
-    const auto tile = [&](int x, int y, int z) HWY_ATTR {
-      return cubes_.fillTile(x, y, z, {{near_[0], near_[1], near_[2]}, nearCount_}, to);
-    };
+    const CellOutput to = to_;
+    const auto tile = [&](int x, int y, int z) HWY_ATTR { return cubes_.fillTile(x, y, z, near_, to); };
     for (int z = 0; z < block_.slices; z += kTileMost)
       for (int y = 0; y < block_.rows; y += kTileMost)
         for (int x = 0; x < block_.width; x += kTileX) {
@@ -167,12 +170,6 @@ class CellTiles {
     return {p.cell[begin] - origin_[a], cells, p.inside[begin], static_cast<float>(cells) + p.inside[end]};
   }
 
-  // A vector of points in one row of cells.
-  struct Run {
-    std::size_t from;  // in points_
-    int cell[3];       // of its first, relative to the tile's first
-  };
-
   // Finds the points that can matter among those in the cells beside the tile's, and returns the square of
   // the distance within which no others lie; where sums cannot be taken back, all points at once.
   float findNear(int x, int y, int z, bool second) {
@@ -185,88 +182,63 @@ class CellTiles {
     for (int a = 0; a < tables_.lattice->axes(); ++a)
       margin = std::min({margin, box_[a].lo, static_cast<float>(box_[a].cells + 1) - box_[a].hi});
     const float safe = (1.0f + std::max(margin, 0.0f)) * (1.0f + std::max(margin, 0.0f));
-    if (collect(1, second) <= safe || !add_) return safe;
+    if (collect(1, second) <= safe || !to_.add) return safe;
     collect(kCellReach, second);
-    return enough();
+    return kFar;
   }
-
-  // No sample's second point is farther (square).
-  float enough() const { return tables_.lattice->axes() == 3 ? 3.0f : 2.0f; }
 
   // Collects the points that can matter among those at most `reach` cells from the tile's; returns the square
   // of the distance within which they lie.
   float collect(int reach, bool second) {
+    gather(reach);
+    return tables_.lattice->axes() == 3 ? collectAs<3>(second) : collectAs<2>(second);
+  }
+
+  template <int kAxes>
+  HWY_INLINE float collectAs(bool second) {
+    NearBox box;
+    for (int a = 0; a < kAxes; ++a) box.lo[a] = box_[a].lo, box.hi[a] = box_[a].hi;
+    NearSearch<kAxes> search(box, squares_);
+    search.keep(around_, second, near_);
+    return to_.add ? search.bound(around_, second) : 0.0f;
+  }
+
+  // The cells of a tile and how far around.
+  struct Gathered {
+    int reach = -1, first[3] = {}, more[3] = {};
+    bool operator==(const Gathered&) const = default;
+  };
+
+  // Places of all points at most `reach` cells from the tile's, relative to its first.
+  void gather(int reach) {
     const D d;
-    const bool solid = tables_.lattice->axes() == 3;
-    const int deep = solid ? reach : 0;
-    const auto loX = hn::Set(d, box_[0].lo), hiX = hn::Set(d, box_[0].hi);
-    const int across = box_[0].cells + 1 + 2 * reach;
-    const auto zero = hn::Zero(d), far = hn::Set(d, kFar);
-    auto first = far, next = far;  // least and second least of the greatest distances' squares, by lane
-    std::size_t runs = 0;
+    // Tiles one after the other often lie in the same cells.
+    const Gathered cells{
+        reach, {box_[0].cell, box_[1].cell, box_[2].cell}, {box_[0].cells, box_[1].cells, box_[2].cells}};
+    if (cells == gathered_) return;
+    gathered_ = cells;
+    const int deep = tables_.lattice->axes() == 3 ? reach : 0, across = box_[0].cells + 1 + 2 * reach;
+    int count = 0;
     for (int k = -deep; k <= box_[2].cells + deep; ++k)
       for (int j = -reach; j <= box_[1].cells + reach; ++j) {
-        const std::size_t at = rowAt(box_[1].cell + j, box_[2].cell + k);
+        const std::size_t at =
+            rowAt(box_[1].cell + j, box_[2].cell + k) + static_cast<std::size_t>(box_[0].cell - reach);
+        const auto y = hn::Set(d, static_cast<float>(j)), z = hn::Set(d, static_cast<float>(k));
         for (int i = 0; i < across; i += kLanes) {
-          const std::size_t from = at + static_cast<std::size_t>(box_[0].cell - reach + i);
-          const auto px =
-              hn::Add(hn::LoadU(d, points_[0] + from), hn::Iota(d, static_cast<float>(i - reach)));
-          auto nearest = hn::Max(hn::Max(hn::Sub(loX, px), hn::Sub(px, hiX)), zero);
-          auto farthest = hn::Max(hn::Sub(hiX, px), hn::Sub(px, loX));
-          nearest = hn::Mul(nearest, nearest);
-          farthest = hn::Mul(farthest, farthest);
-          addAxis(1, from, j, nearest, farthest);
-          if (solid) addAxis(2, from, k, nearest, farthest);
-          next = hn::Min(next, hn::Max(first, farthest));
-          first = hn::Min(first, farthest);
-          hn::StoreU(nearest, d, away_ + runs * std::size_t{kLanes});
-          runs_[runs++] = {from, {i - reach, j, k}};
+          const auto put = [&](int a, V cell) HWY_ATTR {
+            hn::StoreU(hn::Add(hn::LoadU(d, points_[a] + at + i), cell), d, around_.place[a] + count + i);
+          };
+          put(0, hn::Iota(d, static_cast<float>(i - reach)));
+          put(1, y);
+          if (deep > 0) put(2, z);
         }
+        count += across;
       }
-    float limit = hn::GetLane(hn::MinOfLanes(d, first));
-    if (second) {
-      // The second least of all lanes: at most one lane's least is the least of all.
-      const auto rest = hn::IfThenElse(hn::Eq(first, hn::Set(d, limit)), next, first);
-      limit = hn::GetLane(hn::MinOfLanes(d, rest));
-    }
-    limit = std::min(limit, enough()) * 1.00001f;
-
-    const auto most = hn::Set(d, limit);
-    nearCount_ = 0;
-    for (std::size_t v = 0; v < runs; ++v) {
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, away_ + v * std::size_t{kLanes}), most), bits);
-      const Run& run = runs_[v];
-      // Without branches, which nobody could predict: all lanes are written, those to keep first.
-      const auto order = hn::SetTableIndices(d, kKeepFirst[bits[0] & ((1 << kLanes) - 1)].data());
-      const auto keep = [&](int a, V plus) HWY_ATTR {
-        const auto place = hn::Add(hn::LoadU(d, points_[a] + run.from), plus);
-        hn::StoreU(hn::TableLookupLanes(place, order), d, near_[a] + nearCount_);
-      };
-      keep(0, hn::Iota(d, static_cast<float>(run.cell[0])));
-      keep(1, hn::Set(d, static_cast<float>(run.cell[1])));
-      if (solid) keep(2, hn::Set(d, static_cast<float>(run.cell[2])));
-      nearCount_ += std::popcount(static_cast<unsigned>(bits[0]));
-    }
-    // Far points, so that loops over these may take two or a vector at a time.
-    for (auto& q : near_) hn::StoreU(far, d, q + nearCount_);
-    nearCount_ += nearCount_ % 2;
-    return limit;
+    around_.count = count;
+    for (int a = 0; a < tables_.lattice->axes(); ++a)
+      hn::StoreU(hn::Set(d, kFar), d, around_.place[a] + count);
   }
 
-  HWY_INLINE V placeOn(int a, std::size_t from, int cell) const {
-    const D d;
-    return hn::Add(hn::LoadU(d, points_[a] + from), hn::Set(d, static_cast<float>(cell)));
-  }
-  HWY_INLINE void addAxis(int a, std::size_t from, int cell, V& nearest, V& farthest) const {
-    const D d;
-    const auto p = placeOn(a, from, cell);
-    const auto below = hn::Sub(hn::Set(d, box_[a].lo), p), above = hn::Sub(p, hn::Set(d, box_[a].hi));
-    const auto near = hn::Max(hn::Max(below, above), hn::Zero(d));
-    const auto far = hn::Max(hn::Sub(hn::Set(d, box_[a].hi), p), hn::Sub(p, hn::Set(d, box_[a].lo)));
-    nearest = hn::MulAdd(near, near, nearest);
-    farthest = hn::MulAdd(far, far, farthest);
-  }
   // Samples at least an eighth of a cell apart: a vector spans a cell or more, and boxes leave too many
   // points. Every lane looks at the 27 (9) cells around its own. What the lanes see of these is gathered once
   // for all rows in one cell, and the distances in x and y once for all slices.
@@ -312,11 +284,11 @@ class CellTiles {
       const auto index = hn::Add(hn::Load(DI(), lane), hn::Set(DI(), i));
       seen[i] = hn::IndicesFromVec(d, near ? index : hn::Zero(DI()));
     }
-    around_ = 0;
+    seen_ = 0;
     for (int k = solid ? -1 : 0; k <= (solid ? 1 : 0); ++k)
       for (int j = -1; j <= 1; ++j) {
         const std::size_t at = rowAt(cellY + j, cellZ + k) + static_cast<std::size_t>(cellX);
-        for (int i = -1; i <= 1; ++i, ++around_) {
+        for (int i = -1; i <= 1; ++i, ++seen_) {
           V p[3];
           for (int a = 0; a < tables_.lattice->axes(); ++a) {
             if (near) {
@@ -329,10 +301,9 @@ class CellTiles {
             }
           }
           const auto dx = hn::Sub(hn::Add(p[0], hn::Set(d, static_cast<float>(i))), ux);
-          hn::Store(hn::Mul(dx, dx), d, aroundX_ + around_ * kLanes);
-          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, aroundY_ + around_ * kLanes);
-          if (solid)
-            hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, aroundZ_ + around_ * kLanes);
+          hn::Store(hn::Mul(dx, dx), d, seenX_ + seen_ * kLanes);
+          hn::Store(hn::Add(p[1], hn::Set(d, static_cast<float>(j))), d, seenY_ + seen_ * kLanes);
+          if (solid) hn::Store(hn::Add(p[2], hn::Set(d, static_cast<float>(k))), d, seenZ_ + seen_ * kLanes);
         }
       }
   }
@@ -359,20 +330,20 @@ class CellTiles {
       nearest = hn::MulAdd(near, near, nearest);
       farthest = hn::MulAdd(far, far, farthest);
     };
-    for (int q = 0; q < around_; ++q) {
-      auto nearest = hn::Load(d, aroundX_ + q * kLanes), farthest = nearest;
-      addBounds(aroundY_ + q * kLanes, y, nearest, farthest);
-      if (solid) addBounds(aroundZ_ + q * kLanes, z, nearest, farthest);
+    for (int q = 0; q < seen_; ++q) {
+      auto nearest = hn::Load(d, seenX_ + q * kLanes), farthest = nearest;
+      addBounds(seenY_ + q * kLanes, y, nearest, farthest);
+      if (solid) addBounds(seenZ_ + q * kLanes, z, nearest, farthest);
       hn::Store(nearest, d, least + q * kLanes);
       most = hn::Min(most, farthest);
     }
     most = hn::Mul(most, hn::Set(d, 1.00001f));
     int kept = 0;
     const auto move = [&](int q) HWY_ATTR {
-      for (float* around : {aroundX_, aroundY_, aroundZ_})
+      for (float* around : {seenX_, seenY_, seenZ_})
         hn::Store(hn::Load(d, around + q * kLanes), d, around + kept * kLanes);
     };
-    for (int q = 0; q < around_; ++q) {
+    for (int q = 0; q < seen_; ++q) {
       const bool keep = !hn::AllFalse(d, hn::Le(hn::Load(d, least + q * kLanes), most));
       move(q);
       kept += keep ? 1 : 0;
@@ -381,7 +352,7 @@ class CellTiles {
       move(kept - 1);
       ++kept;
     }
-    around_ = kept;
+    seen_ = kept;
   }
 
   // Row r of the slices z to z1, which lie in one cell.
@@ -391,9 +362,9 @@ class CellTiles {
     HWY_ALIGN float flat[28 * kTileX];  // squares of the distances in x and y
     const auto uy = hn::Set(d, axis(1).inside[block_.y + r]);
     auto least = hn::Set(d, kFar);
-    for (int q = 0; q < around_; ++q) {
-      const auto dy = hn::Sub(hn::Load(d, aroundY_ + q * kLanes), uy);
-      const auto square = hn::MulAdd(dy, dy, hn::Load(d, aroundX_ + q * kLanes));
+    for (int q = 0; q < seen_; ++q) {
+      const auto dy = hn::Sub(hn::Load(d, seenY_ + q * kLanes), uy);
+      const auto square = hn::MulAdd(dy, dy, hn::Load(d, seenX_ + q * kLanes));
       least = hn::Min(least, square);
       hn::Store(square, d, flat + q * kLanes);
     }
@@ -401,9 +372,9 @@ class CellTiles {
       if (solid) {
         const auto uz = hn::Set(d, axis(2).inside[block_.z + s]);
         auto other = least = hn::Set(d, kFar);  // two chains
-        for (int q = 0; q < around_; q += 2) {
-          const auto dz0 = hn::Sub(hn::Load(d, aroundZ_ + q * kLanes), uz);
-          const auto dz1 = hn::Sub(hn::Load(d, aroundZ_ + (q + 1) * kLanes), uz);
+        for (int q = 0; q < seen_; q += 2) {
+          const auto dz0 = hn::Sub(hn::Load(d, seenZ_ + q * kLanes), uz);
+          const auto dz1 = hn::Sub(hn::Load(d, seenZ_ + (q + 1) * kLanes), uz);
           least = hn::Min(least, hn::MulAdd(dz0, dz0, hn::Load(d, flat + q * kLanes)));
           other = hn::Min(other, hn::MulAdd(dz1, dz1, hn::Load(d, flat + (q + 1) * kLanes)));
         }
@@ -412,9 +383,7 @@ class CellTiles {
       auto value = hn::Sqrt(least);
       // Points beyond the cells around are farther than 1; so, rarely, is the nearest of these.
       if (!hn::AllTrue(d, hn::Le(least, hn::Set(d, 1.0f)))) value = exactly(x, r, s, value);
-      float* out = out_ + (static_cast<std::ptrdiff_t>(s) * block_.rows + r) * outStride_ + x;
-      const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
-      hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
+      to_.put(d, value, to_.at(x, r, s));
     }
   }
 
@@ -449,106 +418,90 @@ class CellTiles {
     return hn::Load(d, value);
   }
 
-  // Place of a sample relative to the tile's first cell.
-  float inTile(int a, int sample, int tile) const {
-    const CellPlaces& p = axis(a);
-    return static_cast<float>(p.cell[first(a) + sample] - p.cell[first(a) + tile]) +
-           p.inside[first(a) + sample];
-  }
-
-  // Squares of the distances on one axis from the points that matter to the samples of the tile: most_ a
-  // sample.
-  HWY_INLINE void squaresOn(int a, int tile, float* out) const {
+  // Squares of the distances on one axis from the points that matter to the samples of the tile: kTileMost a
+  // point.
+  HWY_INLINE void squaresOn(int a, int tile) const {
     const D d;
-    for (int i = 0; i < tables_.tile[a]; ++i, out += most_) {
-      const auto p = hn::Set(d, inTile(a, tile + i, tile));
-      for (int q = 0; q < nearCount_; q += kLanes) {
-        const auto away = hn::Sub(hn::LoadU(d, near_[a] + q), p);
-        hn::Store(hn::Mul(away, away), d, out + q);
+    const float* HWY_RESTRICT near = near_.place[a];
+    float* HWY_RESTRICT out = along_[a];
+    for (int v = 0; v < kTileMost; v += kLanes) {
+      const auto p = hn::LoadU(d, inTile_[a] + tile + v);
+      for (int q = 0, count = near_.count; q < count; ++q) {
+        const auto away = hn::Sub(hn::Set(d, near[q]), p);
+        hn::Store(hn::Mul(away, away), d, out + q * kTileMost + v);
       }
     }
   }
 
   // Returns the square of the greatest distance that decided over a sample.
   float fillTile(Feature feature, int x, int y, int z) {
+    const bool few = tables_.tile[1] <= 4;
     switch (feature) {
       case Feature::kF1:
-        return fillTileAs<Feature::kF1>(x, y, z);
+        return few ? fillTileAs<Feature::kF1, 4>(x, y, z) : fillTileAs<Feature::kF1, 8>(x, y, z);
       case Feature::kF2:
-        return fillTileAs<Feature::kF2>(x, y, z);
+        return fillTileAs<Feature::kF2, 4>(x, y, z);
       case Feature::kF2MinusF1:
         break;
     }
-    return fillTileAs<Feature::kF2MinusF1>(x, y, z);
+    return fillTileAs<Feature::kF2MinusF1, 4>(x, y, z);
   }
 
-  template <Feature kFeature>
+  // kRows rows share the loads; in a tile of fewer some are done in vain.
+  template <Feature kFeature, int kRows>
   HWY_INLINE float fillTileAs(int x, int y, int z) {
     const D d;
-    const DI di;
     const bool solid = tables_.lattice->axes() == 3;
-    const int rows = tables_.tile[1];
-    const auto anchor = hn::Set(di, axis(0).cell[block_.x + x]);
+    const int rows = tables_.tile[1], slices = tables_.tile[2], count = near_.count;
+    const CellOutput to = to_;
+    squaresOn(0, x);
+    squaresOn(1, y);
+    if (solid) squaresOn(2, z);
+    const float* HWY_RESTRICT const alongX = along_[0];
+    const float* HWY_RESTRICT const alongY = along_[1];
+    const float* HWY_RESTRICT const alongZ = along_[2];
     auto greatest = hn::Zero(d);
-    most_ = (nearCount_ + kLanes - 1) / kLanes * kLanes;
-    squaresOn(1, y, alongY_);
-    if (solid) squaresOn(2, z, alongZ_);
-    for (int i = 0; i < kTileX; i += kLanes) {
-      const auto cells = hn::Sub(hn::LoadU(di, axis(0).cell + block_.x + x + i), anchor);
-      const auto px = hn::Add(hn::ConvertTo(d, cells), hn::LoadU(d, axis(0).inside + block_.x + x + i));
-      for (int q = 0; q < nearCount_; ++q) {
-        const auto dx = hn::Sub(hn::Set(d, near_[0][q]), px);
-        hn::Store(hn::Mul(dx, dx), d, alongX_ + q * kLanes);
-      }
-      for (int s = 0; s < tables_.tile[2]; ++s) {
-        const float* HWY_RESTRICT beside = alongY_;
-        if (solid) {
-          // All rows before the first is needed: what is stored as vectors is read number by number.
-          for (int q = 0; q < nearCount_; q += kLanes) {
-            const auto dz = hn::Load(d, alongZ_ + s * most_ + q);
-            for (int r = 0; r < rows; ++r)
-              hn::Store(hn::Add(hn::Load(d, alongY_ + r * most_ + q), dz), d, beside_ + r * most_ + q);
-          }
-          beside = beside_;
+    for (int s = 0; s < slices; ++s) {
+      const float* HWY_RESTRICT beside = alongY;
+      if (solid) {
+        // All rows before the first is needed: what is stored as vectors is read number by number.
+        for (int q = 0; q < count; ++q) {
+          const auto dz = hn::Set(d, alongZ[q * kTileMost + s]);
+          for (int v = 0; v < kTileMost; v += kLanes)
+            hn::Store(hn::Add(hn::Load(d, alongY + q * kTileMost + v), dz), d, beside_ + q * kTileMost + v);
         }
-        float* out = out_ + (static_cast<std::ptrdiff_t>(z + s) * block_.rows + y) * outStride_ + x + i;
-        for (int r = 0; r < rows; r += 4, out += std::ptrdiff_t{4} * outStride_) {
-          // Four rows share the loads; in a tile of fewer some are done in vain.
-          const float* HWY_RESTRICT of[4];
-          for (int k = 0; k < 4; ++k) of[k] = beside + std::min(r + k, rows - 1) * most_;
-          V first[4], second[4];
-          for (int k = 0; k < 4; ++k) first[k] = second[k] = hn::Set(d, kFar);
-          for (int q = 0; q < nearCount_; q += 2)
-            for (int p = q; p < q + 2; ++p) {
-              const auto dx = hn::Load(d, alongX_ + p * kLanes);
-              for (int k = 0; k < 4; ++k) {
-                const auto square = hn::Add(dx, hn::Set(d, of[k][p]));
-                if constexpr (kFeature != Feature::kF1)
-                  second[k] = hn::Min(second[k], hn::Max(first[k], square));
-                first[k] = hn::Min(first[k], square);
-              }
+        beside = beside_;
+      }
+      for (int i = 0; i < kTileX; i += kLanes)
+        for (int r = 0; r < rows; r += kRows) {
+          V first[kRows], second[kRows];
+          for (int k = 0; k < kRows; ++k) first[k] = second[k] = hn::Set(d, kFar);
+          for (int q = 0; q < count; ++q) {
+            const auto dx = hn::Load(d, alongX + q * kTileMost + i);
+            const float* HWY_RESTRICT row = beside + q * kTileMost + r;
+            for (int k = 0; k < kRows; ++k) {
+              const auto square = hn::Add(dx, hn::Set(d, row[k]));
+              if constexpr (kFeature != Feature::kF1)
+                second[k] = hn::Min(second[k], hn::Max(first[k], square));
+              first[k] = hn::Min(first[k], square);
             }
-          for (int k = 0; k < 4; ++k) {
+          }
+          float* out = to.at(x + i, y + r, z + s);
+          for (int k = 0; k < kRows; ++k, out += to.row) {
+            if (kRows < kTileMost && r + k >= rows) break;
             greatest = hn::Max(greatest, kFeature == Feature::kF1 ? first[k] : second[k]);
-            if (r + k < rows)
-              put<kFeature>(first[k], second[k], out + static_cast<std::ptrdiff_t>(k) * outStride_);
+            to.put(d, value<kFeature>(first[k], second[k]), out);
           }
         }
-      }
     }
     return hn::GetLane(hn::MaxOfLanes(d, greatest));
   }
 
   template <Feature kFeature>
-  HWY_INLINE void put(V first, V second, float* out) const {
-    const D d;
-    auto value = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
-    if constexpr (kFeature == Feature::kF2MinusF1) value = hn::Sub(hn::Sqrt(second), value);
-    const auto sum = add_ ? hn::LoadU(d, out) : hn::Set(d, bias_);
-    hn::StoreU(hn::MulAdd(hn::Set(d, weight_), value, sum), d, out);
+  static HWY_INLINE V value(V first, V second) {
+    const auto distance = hn::Sqrt(kFeature == Feature::kF2 ? second : first);
+    return kFeature == Feature::kF2MinusF1 ? hn::Sub(hn::Sqrt(second), distance) : distance;
   }
-
-  static constexpr float kFar = 1e9f;
 
   const CellTables& tables_;
   const Block block_;
@@ -556,20 +509,17 @@ class CellTiles {
   int origin_[3], count_[3], reach_[3], stride_ = 0;  // of the cells whose points are known
   float* points_[3] = {};                             // within their cells
   Extent box_[3];
-  float* near_[3];  // the points that matter in the tile, relative to its first cell
-  int nearCount_ = 0;
-  Run* runs_;
-  // Squares of distances of the points that matter: to a vector of samples in x; to the rows in y and the
-  // slices in z, most_ apart; to the rows of a slice in y and z.
-  float *alongX_, *alongY_, *alongZ_, *beside_;
-  std::ptrdiff_t most_ = 0;
-  float* away_;     // of each, the square of the distance beside x
-  int around_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
-  HWY_ALIGN float aroundX_[28 * kTileX], aroundY_[28 * kTileX], aroundZ_[28 * kTileX];
-  float* out_ = nullptr;
-  int outStride_ = 0;
-  float weight_ = 1.0f, bias_ = 0.0f;
-  bool add_ = false;
+  Gathered gathered_;
+  NearPoints around_,
+      near_;               // relative to the tile's first cell: the points about it, those that matter in it
+  float* squares_;         // of distances, of the points about the tile
+  float* inTile_[3] = {};  // by axis, places of samples relative to their tile's first cell
+  // Squares of distances of the points that matter, kTileMost a point: on each axis to the tile's samples; to
+  // the rows of a slice in y and z.
+  float *along_[3] = {}, *beside_;
+  int seen_ = 0;  // points around the cells of a vector: the squares of their distances in x, their y and z
+  HWY_ALIGN float seenX_[28 * kTileX], seenY_[28 * kTileX], seenZ_[28 * kTileX];
+  CellOutput to_{};
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE

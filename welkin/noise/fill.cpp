@@ -118,19 +118,33 @@ HWY_INLINE void mixRow(int width, const float* const* cells, float* const* chann
   }
 }
 
+// One octave of cells as floats, over whole tiles.
+void fillCellFloats(const FillJob& job, const Block& b, const Block& tiles, Scratch& scratch) {
+  const glm::ivec3& size = job.box.size;
+  float* out = static_cast<float*>(job.out) + (static_cast<std::size_t>(b.z) * size.y + b.y) * size.x + b.x;
+  const bool clamps = job.low > -hwy::HighestValue<float>() || job.high < hwy::HighestValue<float>();
+  CellTiles(job.cells[0], tiles, scratch)
+      .fill(job.params->feature, {out, size.x, static_cast<std::ptrdiff_t>(size.x) * size.y,
+                                  job.cells[0].weight, job.bias, false, clamps, job.low, job.high});
+}
+
 // Blocks of cells lie at multiples of the tiles; what of them is in the box is stored.
 void fillCells(const FillJob& job, const Block& b, Scratch& scratch) {
   const Block tiles = job.tilesOf(b);
+  const bool mixed = job.params->kind == Kind::kPerlinWorley;
+  const bool whole = tiles.width == b.width && tiles.rows == b.rows && tiles.slices == b.slices;
+  if (whole && !mixed && job.cellTerms == 1 && job.format == Format::kFloat)
+    return fillCellFloats(job, b, tiles, scratch);
   const int stride = tiles.width + 16;  // rows not all in the same sets of the cache
   const std::size_t samples = static_cast<std::size_t>(stride) * tiles.rows * tiles.slices;
-  const bool mixed = job.params->kind == Kind::kPerlinWorley;
   float* values[4] = {};
   for (int c = 0; c < (mixed ? 4 : 1); ++c) values[c] = scratch.take<float>(samples + kPad);
   for (int t = 0; t < job.cellTerms; ++t) {
     const bool first = mixed || t == 0;
     CellTiles(job.cells[t], tiles, scratch)
-        .fill(mixed ? Feature::kF1 : job.params->feature, job.cells[t].weight, first ? job.bias : 0.0f,
-              !first, values[mixed ? t : 0], stride);
+        .fill(mixed ? Feature::kF1 : job.params->feature,
+              {values[mixed ? t : 0], stride, std::ptrdiff_t{stride} * tiles.rows, job.cells[t].weight,
+               first ? job.bias : 0.0f, !first, false, 0.0f, 0.0f});
   }
   const auto rowOf = [&](float* v, int y, int z) HWY_ATTR {
     return v +

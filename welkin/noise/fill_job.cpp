@@ -445,7 +445,7 @@ void fillGrid(FillJob& job) {
   int rows = size.y, slices = 1;
   if (cells) {
     rows = p.dimensions == 3 ? 16 : 64;
-    slices = 8;
+    slices = p.kind == Kind::kCellular ? 16 : 8;
   } else if (size.z < 4 * threadCount()) {
     rows = std::max(64, size.y / (4 * threadCount()) / kChunk * kChunk);
   }

@@ -10,6 +10,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -81,6 +82,20 @@ HWY_INLINE auto converted(const FillJob& job, D d, V v) {
   }
 }
 
+// Bytes of four channels, channel 0 lowest: one word a sample. Each value is rounded by adding 2^23, whose
+// last bit is 1; what that leaves in the upper bits is shifted out, or taken away from channel 0.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> packed(const FillJob& job, D d, V v0, V v1, V v2, V v3) {
+  const hn::RebindToUnsigned<D> du;
+  const auto whole = hn::Set(d, 8388608.0f);
+  const auto bits = [&](V v) HWY_ATTR {
+    v = hn::MulAdd(v, hn::Set(d, job.quantiseScale), hn::Set(d, job.quantiseBias));
+    return hn::BitCast(du, hn::Add(hn::Clamp(v, hn::Zero(d), hn::Set(d, 255.0f)), whole));
+  };
+  const auto low = hn::Or(hn::Xor(bits(v0), hn::BitCast(du, whole)), hn::ShiftLeft<8>(bits(v1)));
+  return hn::Or3(low, hn::ShiftLeft<16>(bits(v2)), hn::ShiftLeft<24>(bits(v3)));
+}
+
 // `count` samples of each channel, interleaved, to value `at` of the output.
 template <Format kFormat, int kChannels>
 HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int count, std::size_t at) {
@@ -93,6 +108,14 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
   const bool stream = kFormat == Format::kFloat && kChannels == 1 && job.stream &&
                       reinterpret_cast<std::uintptr_t>(out) % (sizeof(T) * lanes) == 0;
   const auto storeAt = [&](int i, T* to, auto streamed) HWY_ATTR {
+    if constexpr (kFormat == Format::kUint8 && kChannels == 4 && std::endian::native == std::endian::little) {
+      const hn::RebindToUnsigned<decltype(d)> du;
+      const hn::Repartition<T, decltype(du)> bytes;
+      const auto words = packed(job, d, hn::LoadU(d, rows[0] + i), hn::LoadU(d, rows[1] + i),
+                                hn::LoadU(d, rows[2] + i), hn::LoadU(d, rows[3] + i));
+      hn::StoreU(hn::BitCast(bytes, words), bytes, to);
+      return;
+    }
     const auto v0 = converted<kFormat>(job, d, hn::LoadU(d, rows[0] + i));
     if constexpr (kChannels == 1 && decltype(streamed)::value) {
       hn::Stream(v0, dt, to);

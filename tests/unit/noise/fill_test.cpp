@@ -231,11 +231,39 @@ TEST(Fill, IsTheSameInBuffersLargerThanCaches) {
     }
 }
 
+// One octave of cells is written straight to the caller's floats where whole tiles are wanted, and by way of
+// blocks of the fill's own where not: the same values, clamped alike.
+TEST(Fill, OfCellsIsTheSameInWholeTilesAndParts) {
+  for (const int dimensions : {2, 3})
+    for (const Feature feature : {Feature::kF1, Feature::kF2, Feature::kF2MinusF1})
+      for (const Normalisation n : {Normalisation::kRaw, Normalisation::kThesis, Normalisation::kUnitRange,
+                                    Normalisation::kUnitVariance})
+        for (const double cells : {2.0, 9.0, 20.0}) {  // tiles in half a cell, cut into cubes, dense
+          const Noise noise({.kind = Kind::kCellular,
+                             .dimensions = dimensions,
+                             .frequency = glm::dvec3(cells),
+                             .octaves = 1,
+                             .amplitude = 1.4,  // above what is clamped
+                             .feature = feature,
+                             .normalisation = n});
+          const Grid grid = Grid::tile({72, 40, dimensions == 3 ? 40 : 1});
+          const auto whole = filled<float>(noise, grid);
+          for (int z = 0; z < grid.size.z; z += 7)
+            for (int y = 1; y < grid.size.y; y += 5) {
+              const auto row = filled<float>(noise, grid, {{3, y, z}, {66, 1, 1}});
+              const std::size_t from = (static_cast<std::size_t>(z) * grid.size.y + y) * grid.size.x + 3;
+              EXPECT_EQ(std::memcmp(&whole[from], row.data(), row.size() * sizeof(float)), 0)
+                  << dimensions << " " << cells << " " << y << " " << z;
+            }
+        }
+}
+
 // Integers and halves are what the floats round to.
 TEST(Fill, RoundsToEveryFormat) {
   for (const Normalisation n :
        {Normalisation::kRaw, Normalisation::kThesis, Normalisation::kUnitRange, Normalisation::kUnitVariance})
-    for (const Kind kind : {Kind::kPerlin, Kind::kCurl, Kind::kCellular}) {
+    for (const Kind kind : {Kind::kPerlin, Kind::kCurl, Kind::kCellular, Kind::kPerlinWorley}) {
+      if (kind == Kind::kPerlinWorley && n != Normalisation::kRaw) continue;  // it is in [0, 1] already
       NoiseParams p{.kind = kind, .octaves = 3, .amplitude = 0.7, .normalisation = n};
       const Noise noise(p);
       const Grid grid = Grid::tile({37, 11, 5});
@@ -245,7 +273,8 @@ TEST(Fill, RoundsToEveryFormat) {
       const auto halves = filled<Half>(noise, grid);
       for (std::size_t i = 0; i < floats.size(); ++i) {
         const double v = floats[i];
-        const bool isSigned = n == Normalisation::kRaw && kind != Kind::kCellular;
+        const bool isSigned =
+            n == Normalisation::kRaw && kind != Kind::kCellular && kind != Kind::kPerlinWorley;
         const double u = n == Normalisation::kUnitVariance ? 0.5 + v / 8 : isSigned ? (v + 1) / 2 : v;
         const double clamped = std::min(std::max(u, 0.0), 1.0);
         EXPECT_NEAR(bytes[i], 255 * clamped, 0.5001);
