@@ -11,6 +11,7 @@
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
+#include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
 #include "welkin/reference/phase_sampler.h"
 
@@ -68,6 +69,9 @@ PhaseSampler phaseOf(const scene::Slab& slab) {
       return PhaseSampler::tabulated(
           [fit](double c) { return optics::phaseDroplet(static_cast<float>(c), fit); });
     }
+    case scene::SlabPhase::kMie:
+      return PhaseSampler::tabulated(
+          [d = slab.dropletDiameterUm](double c) { return optics::phaseMieDroplet(c, d); });
     case scene::SlabPhase::kHenyeyGreenstein:
       break;
   }

@@ -26,9 +26,12 @@ void describe(Slab& s, ParamVisitor& v) {
       s.opticalDepth);
   v.value({"thickness_m", "m", "height of the slab", 1, 100000}, s.thicknessM);
   v.value({"period_m", "m", "width of all columns together, after which they repeat", 1, 1000000}, s.periodM);
-  v.choice({"phase", "", "phase function; droplets: the fit that clouds are drawn with"}, s.phase);
+  v.choice({"phase", "",
+            "phase function; droplets: the fit that clouds are drawn with; mie: droplets by Mie's theory"},
+           s.phase);
   v.value({"asymmetry", "", "mean cosine, of henyey_greenstein", -0.99, 0.99}, s.asymmetry);
-  v.value({"droplet_diameter_um", "um", "diameter, of droplets", 5, 50}, s.dropletDiameterUm);
+  v.value({"droplet_diameter_um", "um", "diameter, of droplets and mie (there at most 40)", 5, 50},
+          s.dropletDiameterUm);
   v.value({"albedo", "", "share of the light that a scattering leaves", 0, 1}, s.albedo);
   v.choice({"light", "", "a sun without width, or the same radiance from all directions above"}, s.light);
   v.value({"sun_zenith_deg", "deg", "angle of the sun from the zenith", 0, 89.9}, s.sunZenithDeg);

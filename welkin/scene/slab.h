@@ -16,7 +16,7 @@
 
 namespace welkin::scene {
 
-enum class SlabPhase { kHenyeyGreenstein, kRayleigh, kDroplets };
+enum class SlabPhase { kHenyeyGreenstein, kRayleigh, kDroplets, kMie };
 enum class SlabLight { kSun, kDiffuse };
 
 struct SlabColumns {
@@ -54,7 +54,7 @@ void validate(const Slab& s);    // throws ParameterError: a depth and columns, 
 namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::SlabPhase> =
-    std::array<std::string_view, 3>{"henyey_greenstein", "rayleigh", "droplets"};
+    std::array<std::string_view, 4>{"henyey_greenstein", "rayleigh", "droplets", "mie"};
 template <>
 inline constexpr auto kEnumNames<scene::SlabLight> = std::array<std::string_view, 2>{"sun", "diffuse"};
 }  // namespace welkin

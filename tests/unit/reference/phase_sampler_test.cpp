@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "welkin/core/units.h"
+#include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
 
 namespace welkin::reference {
@@ -49,6 +50,8 @@ TEST(PhaseSampler, SamplesFollowTheDensity) {
   expectSamplesFollowDensity(
       PhaseSampler::tabulated([](double c) { return optics::phaseRayleigh(static_cast<float>(c)); }), 0.0,
       1e-4);
+  const auto mie = [](double c) { return optics::phaseMieDroplet(c, 10.0); };
+  expectSamplesFollowDensity(PhaseSampler::tabulated(mie), 0.85, 0.005);
   expectSamplesFollowDensity(droplets(), optics::dropletMeanCosine(optics::dropletPhase(20.0f)), 1e-3);
 }
 
