@@ -101,9 +101,16 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       ->group("Picture");
   add(app, "--bits", a.bits, "8|16", "bits a channel of PNG (default 8)")->group("Picture");
   add(app, "--renderer", a.renderer, "gpu|reference",
-      "gpu: OpenGL, on the processor where there is no GPU (default)")
+      "gpu: OpenGL, on the processor where there is no GPU (default); reference: path tracing, of slabs only "
+      "in "
+      "this version")
       ->group("Picture");
-  add(app, "--spp", a.spp, "N", "samples a pixel of the reference renderer")->group("Picture");
+  add(app, "--spp", a.spp, "N",
+      "paths of the reference renderer, for each column of a slab (default: until --noise)")
+      ->group("Picture");
+  add(app, "--noise", a.noise, "X",
+      "relative standard error at which the reference renderer stops (default 0.001 without --spp)")
+      ->group("Picture");
   add(app, "--frames", a.frames, "N", one("output.frames"))->group("Sequences");
   add(app, "--fps", a.fps, "F", one("output.fps"))->group("Sequences");
   add(app, "--speed", a.speed, "S", one("output.speed"))->group("Sequences");

@@ -10,6 +10,7 @@
 #include "progress_line.h"
 #include "render_settings.h"
 #include "report.h"
+#include "slab_command.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/io/atomic_file.h"
@@ -115,6 +116,7 @@ int runRender(const RenderArgs& args) {
   const RenderSettings settings = renderSettings(args);
   catchInterrupts();  // from here on there may be unfinished files
   if (!settings.report.empty()) checkWritable(settings.report);
+  if (!settings.scene.slab.empty()) return runSlab(settings);
   const RenderReport report = Sequence(settings).draw();
   if (!settings.report.empty()) io::writeTextFile(settings.report, reportJson(settings, report));
   return 0;

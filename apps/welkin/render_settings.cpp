@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "usage_error.h"
@@ -18,6 +19,14 @@ namespace welkin::app {
 namespace {
 
 using scene::Scene;
+
+double positiveShare(const char* flag, const std::string& text) {
+  double x = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size() || !(x >= 1e-5) || !(x <= 1.0))
+    throw UsageError(std::string(flag) + ": expected a number from 0.00001 to 1, found \"" + text + "\"");
+  return x;
+}
 
 // Scene parameter `path` from the text of a flag.
 void set(Scene& s, const char* flag, std::string_view path, std::string_view text) {
@@ -59,13 +68,35 @@ scene::Theme themeOfFlag(const std::string& text) {
   }
 }
 
-void checkRenderer(const RenderArgs& a) {
+// Which renderer, and how long the reference renderer works.
+void setRenderer(RenderSettings& r, const RenderArgs& a) {
   const std::string name = a.renderer.value_or("gpu");
-  if (name == "reference")
-    throw UsageError("--renderer: the reference renderer is not available in this version; expected gpu");
-  if (name != "gpu") throw UsageError("--renderer is \"" + name + "\"; expected gpu or reference");
-  if (a.spp)
-    throw UsageError("--spp belongs to the reference renderer, which is not available in this version");
+  if (name != "gpu" && name != "reference")
+    throw UsageError("--renderer is \"" + name + "\"; expected gpu or reference");
+  r.reference = name == "reference";
+  for (const auto& [flag, given] :
+       {std::pair("--spp", a.spp.has_value()), std::pair("--noise", a.noise.has_value())})
+    if (given && !r.reference)
+      throw UsageError(std::string(flag) +
+                       " belongs to the reference renderer; expected --renderer reference");
+  if (a.spp) r.spp = wholeNumber("--spp", *a.spp, 1, 2000000000);
+  if (a.noise) r.noise = positiveShare("--noise", *a.noise);
+}
+
+// A slab is traced and reported; a sky is drawn.
+void checkSlab(const RenderSettings& r, const RenderArgs& a) {
+  const bool slab = !r.scene.slab.empty();
+  if (slab && !r.reference)
+    throw UsageError(
+        "the scene has a [slab], which only the reference renderer traces; expected --renderer reference");
+  if (!slab && r.reference)
+    throw UsageError(
+        "--renderer: the reference renderer traces only slabs in this version; expected gpu, or a scene with "
+        "[slab]");
+  if (slab && a.out) throw UsageError("-o: a slab has no picture; expected --report FILE.json");
+  if (slab && r.report.empty())
+    throw UsageError("a slab's result is its report; expected --report FILE.json");
+  if (slab && r.scene.output.frames > 1) throw UsageError("a slab does not change in time; expected 1 frame");
 }
 
 // What the name of the output says about its kind.
@@ -106,10 +137,12 @@ void setPlace(Scene& s, const std::string& flag, const std::string& text) {
 }
 
 RenderSettings renderSettings(const RenderArgs& a) {
-  checkRenderer(a);
   RenderSettings r;
-  if (!a.out) throw UsageError("render: expected -o OUT, the file to write");
-  setOutput(r, *a.out);
+  setRenderer(r, a);
+  if (a.out)
+    setOutput(r, *a.out);
+  else if (!r.reference)
+    throw UsageError("render: expected -o OUT, the file to write");
   if (a.bits) {
     r.pngBits = wholeNumber("--bits", *a.bits, 8, 16);
     if (r.pngBits != 8 && r.pngBits != 16) throw UsageError("--bits is " + *a.bits + "; expected 8 or 16");
@@ -117,7 +150,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   }
   if (a.threads) r.threads = threadsOf(*a.threads);
   if (a.report) r.report = *a.report;
-  if (r.report == r.out)
+  if (a.out && r.report == r.out)
     throw UsageError("--report: " + r.report + " is the picture already; expected another name");
 
   // The place first: what is typical of a layer in the file depends on the latitude.
@@ -165,6 +198,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     if (a.size || a.projection || !a.scene) throw UsageError(e.what());
     throw ParameterError(*a.scene + ": " + e.what());
   }
+  checkSlab(r, a);
   if (s.output.frames > 1 && !r.numbered && !r.video)
     throw UsageError(
         r.out + ": " + std::to_string(s.output.frames) +

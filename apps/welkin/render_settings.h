@@ -3,6 +3,7 @@
 // or written here.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "command_line.h"
@@ -19,6 +20,9 @@ struct RenderSettings {
   bool numbered = false;                           // `out` is a pattern
   std::string report;                              // empty: none
   int pngBits = 8;                                 // 8 or 16
+  bool reference = false;                          // the reference renderer, not the GPU's
+  std::optional<int> spp;                          // of the reference renderer: paths at most
+  std::optional<double> noise;                     // and the relative standard error to stop at
   int threads = 0;                                 // 0: all
 };
 

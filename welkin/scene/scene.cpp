@@ -99,10 +99,15 @@ void describe(Scene& s, ParamVisitor& v) {
           s.octaves);
   v.group({"drift", "", "wind and cover that wander by themselves"}, s.drift);
   v.group({"sky_box", "", "pictures all around in the place of the clear sky"}, s.skyBox);
+  v.group({"slab", "",
+           "a layer to prove light transport with, in the place of the whole sky; for the reference renderer "
+           "alone"},
+          s.slab);
   v.list({"layer", "", "one layer of cloud; what is left out is typical of its genus"}, s.layers);
   v.list({"sheet", "",
           "a thin layer of cloud by hand, drawn beside those of the weather, volumes and sheets alike"},
          s.sheets);
+  v.list({"slab_column", "", "columns of a slab that is not homogeneous, from the west"}, s.slab.columns);
 }
 
 void validate(const Scene& s) {
@@ -124,6 +129,7 @@ void validate(const Scene& s) {
                          std::to_string(kMaxSheets));
   for (const Sheet& sheet : s.sheets) validate(sheet);
   validate(s.skyBox);
+  validate(s.slab);
   if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)
     throw ParameterError("output.flare is a lens's; expected projection perspective");
 }

@@ -14,6 +14,7 @@
 #include "welkin/scene/drift.h"
 #include "welkin/scene/sheet.h"
 #include "welkin/scene/sky_box.h"
+#include "welkin/scene/slab.h"
 #include "welkin/sky/atmosphere_params.h"
 #include "welkin/weather/weather.h"
 
@@ -81,6 +82,7 @@ struct Scene {
   std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
   Drift drift;                       // of wind and cover
   SkyBox skyBox;                     // in the place of the clear sky
+  Slab slab;                         // in the place of everything
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
