@@ -13,6 +13,7 @@
 #ifdef WELKIN_HAS_BENCH
 #include "bench/frame_bench.h"
 #include "bench/noise_bench.h"
+#include "bench/splat_bench.h"
 #endif
 
 namespace welkin::app {
@@ -88,11 +89,31 @@ Json frameJson(bool json) {
           {"times", all}};
 }
 
+Json splatJson(bool json) {
+  const bench::SplatTable table = bench::measureSplats();
+  Json all = Json::array();
+  if (!json) {
+    fmt::print("Metaballs at {}x{} on {}, light and eye pass each frame, medians of {}\n\n", table.width,
+               table.height, table.device, table.rounds);
+    fmt::print("| balls | ms | frames a second |\n|---:|---:|---:|\n");
+  }
+  for (const bench::SplatTime& row : table.rows) {
+    if (!json) fmt::print("| {} | {:.1f} | {:.1f} |\n", row.balls, row.ms, 1000.0 / row.ms);
+    all.push_back({{"balls", row.balls}, {"ms", row.ms}});
+  }
+  return {{"device", table.device},
+          {"width", table.width},
+          {"height", table.height},
+          {"median_of", table.rounds},
+          {"times", all}};
+}
+
 struct Subject {
   const char* name;
   Json (*measure)(bool json);
 };
-constexpr std::array<Subject, 2> kSubjects = {{{"noise", noiseJson}, {"frame", frameJson}}};
+constexpr std::array<Subject, 3> kSubjects = {
+    {{"noise", noiseJson}, {"frame", frameJson}, {"splat", splatJson}}};
 
 }  // namespace
 

@@ -310,7 +310,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
 
   BenchArgs bench;
   CLI::App* benchApp = root.add_subcommand("bench", "Measure how fast Welkin is on this machine");
-  benchApp->add_option("name", bench.names, "noise, frame; all of them without a name")->type_name("NAME");
+  benchApp->add_option("name", bench.names, "noise, frame, splat; all of them without a name")
+      ->type_name("NAME");
   benchApp->add_flag("--json", bench.json, "as JSON");
 
   Flag topic;
