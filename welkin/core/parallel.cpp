@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -13,6 +14,90 @@ namespace {
 
 std::atomic<int> gThreads{0};
 thread_local bool tInsideLoop = false;
+
+// One call of parallelFor, on its caller's stack.
+struct Loop {
+  const std::function<void(std::size_t, std::size_t)>& body;
+  std::size_t count, grain, chunks;
+  std::atomic<std::size_t> nextChunk{0};
+
+  // Guarded by the crew's mutex:
+  std::size_t helpers = 0, mostHelpers;
+  std::exception_ptr failure{};
+  Loop* next = nullptr;  // that waits for helpers
+
+  bool wantsHelp() const { return helpers < mostHelpers && nextChunk.load() < chunks; }
+};
+
+// Threads that wait for loops and help with them, kept from loop to loop: to make a thread takes as long as
+// many a loop does. Nothing is allocated once they are there.
+class Crew {
+ public:
+  ~Crew() {
+    {
+      std::lock_guard lock(mutex_);
+      ending_ = true;
+    }
+    work_.notify_all();
+    for (std::thread& t : threads_) t.join();
+  }
+
+  void run(Loop& loop) {
+    {
+      std::lock_guard lock(mutex_);
+      while (threads_.size() < loop.mostHelpers) threads_.emplace_back([this] { helpForEver(); });
+      loop.next = loops_;
+      loops_ = &loop;
+    }
+    if (loop.mostHelpers == 1)
+      work_.notify_one();
+    else
+      work_.notify_all();
+    workOn(loop);
+    std::unique_lock lock(mutex_);
+    Loop** place = &loops_;
+    while (*place != &loop) place = &(*place)->next;
+    *place = loop.next;
+    done_.wait(lock, [&] { return loop.helpers == 0; });
+  }
+
+ private:
+  void helpForEver() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      Loop* loop = nullptr;
+      work_.wait(lock, [&] {
+        for (loop = loops_; loop && !loop->wantsHelp();) loop = loop->next;
+        return loop || ending_;
+      });
+      if (!loop) return;
+      ++loop->helpers;
+      lock.unlock();
+      workOn(*loop);
+      lock.lock();
+      if (--loop->helpers == 0) done_.notify_all();
+    }
+  }
+
+  void workOn(Loop& loop) {
+    tInsideLoop = true;
+    try {
+      for (std::size_t c = loop.nextChunk++; c < loop.chunks; c = loop.nextChunk++)
+        loop.body(c * loop.grain, std::min(loop.count, (c + 1) * loop.grain));
+    } catch (...) {
+      loop.nextChunk = loop.chunks;
+      std::lock_guard lock(mutex_);
+      if (!loop.failure) loop.failure = std::current_exception();
+    }
+    tInsideLoop = false;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable work_, done_;
+  Loop* loops_ = nullptr;
+  std::vector<std::thread> threads_;
+  bool ending_ = false;
+};
 
 }  // namespace
 
@@ -35,30 +120,10 @@ void parallelFor(std::size_t count, std::size_t grain,
     for (std::size_t c = 0; c < chunks; ++c) body(c * grain, std::min(count, (c + 1) * grain));
     return;
   }
-
-  std::atomic<std::size_t> nextChunk{0};
-  std::exception_ptr failure;
-  std::mutex failureMutex;
-  auto work = [&] {
-    tInsideLoop = true;
-    try {
-      for (std::size_t c = nextChunk++; c < chunks; c = nextChunk++)
-        body(c * grain, std::min(count, (c + 1) * grain));
-    } catch (...) {
-      nextChunk = chunks;
-      std::lock_guard lock(failureMutex);
-      if (!failure) failure = std::current_exception();
-    }
-    tInsideLoop = false;
-  };
-  {
-    // Threads are made for each loop: some 20 us, nothing beside the loops that call for it.
-    std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < workers; ++i) threads.emplace_back(work);
-    work();
-    for (std::thread& t : threads) t.join();
-  }
-  if (failure) std::rethrow_exception(failure);
+  static Crew crew;
+  Loop loop{.body = body, .count = count, .grain = grain, .chunks = chunks, .mostHelpers = workers - 1};
+  crew.run(loop);
+  if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
 }  // namespace welkin

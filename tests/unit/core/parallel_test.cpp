@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace welkin {
@@ -47,6 +48,29 @@ TEST_P(Parallel, NestedCallsRun) {
     parallelFor(8, 1, [&](std::size_t begin, std::size_t end) { n += static_cast<int>(end - begin); });
   });
   EXPECT_EQ(n, 64);
+}
+
+TEST_P(Parallel, CallersAtOnceShareTheThreads) {
+  std::atomic<int> n = 0;
+  const auto loops = [&] {
+    for (int i = 0; i < 200; ++i) parallelFor(16, 1, [&](std::size_t, std::size_t) { ++n; });
+  };
+  std::thread other(loops);
+  loops();
+  other.join();
+  EXPECT_EQ(n, 2 * 200 * 16);
+}
+
+TEST_P(Parallel, UsesNoMoreThreadsThanAreSet) {
+  std::atomic<int> now = 0, most = 0;
+  parallelFor(200, 1, [&](std::size_t, std::size_t) {
+    const int here = ++now;
+    for (int seen = most; here > seen && !most.compare_exchange_weak(seen, here);) {
+    }
+    std::this_thread::yield();
+    --now;
+  });
+  EXPECT_LE(most, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 5));

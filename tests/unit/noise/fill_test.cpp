@@ -4,11 +4,13 @@
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -292,15 +294,22 @@ TEST(Fill, RoundsToEveryFormat) {
 
 TEST(Fill, AgainAllocatesNothing) {
   const int before = threadCount();
-  setThreadCount(1);
-  for (const Case& c : cases()) {
-    const Noise noise(c.params);
-    std::vector<float> out(static_cast<std::size_t>(c.grid.size.x) * c.grid.size.y * c.grid.size.z *
-                           noise.channels());
-    for (int i = 0; i < 2; ++i) noise.fill(c.grid, std::span(out));
-    const long counted = gAllocations;
-    noise.fill(c.grid, std::span(out));
-    EXPECT_EQ(gAllocations - counted, 0) << c.name;
+  for (const int threads : {1, 2}) {
+    setThreadCount(threads);
+    for (const Case& c : cases()) {
+      const Noise noise(c.params);
+      std::vector<float> out(static_cast<std::size_t>(c.grid.size.x) * c.grid.size.y * c.grid.size.z *
+                             noise.channels());
+      for (int i = 0; i < 2; ++i) noise.fill(c.grid, std::span(out));
+      // Scratch memory is made for as many threads as were ever at work at once, which chance decides.
+      long least = std::numeric_limits<long>::max();
+      for (int i = 0; i < (threads == 1 ? 1 : 10) && least > 0; ++i) {
+        const long counted = gAllocations;
+        noise.fill(c.grid, std::span(out));
+        least = std::min(least, gAllocations - counted);
+      }
+      EXPECT_EQ(least, 0) << c.name << ", threads " << threads;
+    }
   }
   setThreadCount(before);
 }
