@@ -70,7 +70,7 @@ void measure(Case& c, int seed, const std::shared_ptr<const field::CloudNoise>& 
   c.scene.seed = seed;
   const auto calibration = scene::calibrateClouds(c.scene, c.weather, noise);
   const auto clouds = scene::cloudsAt(c.scene, c.weather, calibration, noise, 0.0);
-  const scene::DeliveredCover cover = scene::measureCover(c.scene, c.weather, *clouds, 0.0);
+  const scene::DeliveredCover cover = scene::measureCover(c.scene, c.weather, clouds, 0.0);
   for (std::size_t i = 0; i < c.sums.size(); ++i) {
     const double delivered =
         i < cover.layers.size() ? cover.layers[i].deliveredOktas : cover.sky.deliveredOktas;

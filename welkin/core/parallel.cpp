@@ -17,7 +17,7 @@ thread_local bool tInsideLoop = false;
 
 // One call of parallelFor, on its caller's stack.
 struct Loop {
-  const std::function<void(std::size_t, std::size_t)>& body;
+  LoopBody body;
   std::size_t count, grain, chunks;
   std::atomic<std::size_t> nextChunk{0};
 
@@ -110,8 +110,7 @@ void setThreadCount(int n) {
   gThreads.store(std::max(n, 0));
 }
 
-void parallelFor(std::size_t count, std::size_t grain,
-                 const std::function<void(std::size_t, std::size_t)>& body) {
+void parallelFor(std::size_t count, std::size_t grain, LoopBody body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunks = (count + grain - 1) / grain;

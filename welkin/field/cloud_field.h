@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The density of all clouds of a scene: layers over one set of noise textures. Extinction in 1/m as a pure
-// function of position; the instant is in the layers' displacements. Immutable; safe to share between
+// function of position; the instant is in the layers' displacements. What is const is safe to share between
 // threads.
 //
 // Frame: east-north-up, origin on the ground under the eye; the ground is a sphere of radius earthRadiusM().
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -36,6 +37,8 @@ class CloudField {
   const CloudNoise& noise() const { return *noise_; }
   const std::shared_ptr<const CloudNoise>& sharedNoise() const { return noise_; }
   std::span<const CloudLayer> layers() const { return layers_; }
+  // The same layers at another instant: as many as there are.
+  void setLayers(std::span<const CloudLayer> layers) { std::ranges::copy(layers, layers_.begin()); }
   double earthRadiusM() const { return earthRadiusM_; }
 
   // Extinction at p, 1/m.

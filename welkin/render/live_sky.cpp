@@ -56,7 +56,13 @@ struct LiveSky::Impl {
   std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
 
-  void update(const scene::SkyState& next);
+  // Kept for their memory.
+  std::vector<shading::SheetInSky> inSky;
+  shading::LightUnderSheets underSheets;
+  shading::Uniforms skyUniforms;
+
+  void change(const scene::SkyState& next);
+  void refresh();
   void updateBox(const scene::SkyBox& wanted);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
@@ -84,17 +90,23 @@ const scene::SkyState& LiveSky::state() const {
 }
 
 void LiveSky::update(const scene::Scene& scene, double secondsAfter) {
-  const bool same = impl_->state && impl_->state->scene == scene;
-  if (same && impl_->state->secondsAfter == secondsAfter) return;
-  update(scene::buildSky(scene, secondsAfter, same ? &*impl_->state : nullptr));
+  Impl& m = *impl_;
+  if (!m.state || m.state->scene != scene) {
+    update(scene::buildSky(scene, secondsAfter));
+  } else if (m.state->secondsAfter != secondsAfter) {
+    const gpu::StateGuard guard;
+    scene::moveSky(*m.state, secondsAfter);
+    m.refresh();
+  }
 }
 
 void LiveSky::update(const scene::SkyState& state) {
   const gpu::StateGuard guard;
-  impl_->update(state);
+  impl_->change(state);
+  impl_->refresh();
 }
 
-void LiveSky::Impl::update(const scene::SkyState& next) {
+void LiveSky::Impl::change(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
   if (!same) updateBox(next.scene.skyBox);  // first, as its files may be missing
   state = next;
@@ -112,16 +124,20 @@ void LiveSky::Impl::update(const scene::SkyState& next) {
     if (!clouds || clouds->noise() != state->clouds->sharedNoise())
       clouds.emplace(state->clouds->sharedNoise());
   }
+}
+
+// Everything to the state's instant.
+void LiveSky::Impl::refresh() {
   for (ThinLayer& sheet : sheets)
     sheet.matter = shading::matterAt(sheet.sheet, sheet.described, state->secondsAfter);
   for (ThinLayer& sheet : sheets)
     if (sheet.living) octavesPass.compose(*sheet.living, state->secondsAfter, sheet.flat);
   updateAmbient();
   tables.updateLive(*state);
-  const shading::Uniforms sky = shading::skyUniforms(*state);
-  sheetPass.setSky(sky);
-  for (gpu::Program& p : backdrops) setUniforms(p, sky);
-  if (box) setUniforms(boxBackdrop, sky);
+  shading::skyUniforms(*state, skyUniforms);
+  sheetPass.setSky(skyUniforms);
+  for (gpu::Program& p : backdrops) setUniforms(p, skyUniforms);
+  if (box) setUniforms(boxBackdrop, skyUniforms);
 }
 
 void LiveSky::Impl::updateBox(const scene::SkyBox& wanted) {
@@ -134,13 +150,13 @@ void LiveSky::Impl::updateBox(const scene::SkyBox& wanted) {
 
 // The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
 void LiveSky::Impl::updateAmbient() {
-  std::vector<shading::SheetInSky> inSky;
+  inSky.clear();
   for (const ThinLayer& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
-  const shading::LightUnderSheets light = shading::lightUnder(*state, inSky);
-  state->ambient = light.ambient;
+  shading::lightUnder(*state, inSky, {}, underSheets);
+  state->ambient = underSheets.ambient;
   for (std::size_t i = 0; i < sheets.size(); ++i) {
-    sheets[i].light = light.sheets[i];
-    sheets[i].sunThrough = light.sunThrough[i];
+    sheets[i].light = underSheets.sheets[i];
+    sheets[i].sunThrough = underSheets.sunThrough[i];
   }
 }
 

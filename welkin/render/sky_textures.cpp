@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/render/sky_textures.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "welkin/shading/uniforms.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr gpu::TextureOptions kHalf{.format = gpu::Format::kRgba16F}, kFull{.format = gpu::Format::kRgba32F};
 
 constexpr int kWeights = 64;
+constexpr double kKeyS = scene::ClearSkyKey::kKeyS;
 
 double eyeAltitude(const scene::SkyState& state) {
   return state.scene.place.altitudeM + state.scene.camera.eyeM;
@@ -42,48 +44,82 @@ void SkyTextures::upload(const scene::SkyState& state, const sky::SkyTables& tab
 
 void SkyTextures::update(const scene::SkyState& state) {
   upload(state, sky::makeSkyTables(*state.atmosphere, eyeAltitude(state), state.lights));
-  put(keyLight_, shading::keyLightTable(state), kFull);
+  shading::keyLightTable(state, keyLightTable_);
+  put(keyLight_, keyLightTable_, kFull);
   shown_.reset();
 }
 
-const SkyTextures::Key& SkyTextures::keyAt(const scene::SkyState& state, double atS) {
-  for (const auto& key : keys_)
-    if (key && key->atS == atS) return *key;
-  // The older of the two goes: time mostly runs one way, and two keys are all that an instant needs.
-  auto& place = !keys_[0] || (keys_[1] && std::abs(keys_[0]->atS - atS) > std::abs(keys_[1]->atS - atS))
-                    ? keys_[0]
-                    : keys_[1];
-  const scene::SkyLights lights = scene::lightsAt(state.scene, atS);
-  place = Key{atS, lights.bySun, sky::makeSkyTables(*state.atmosphere, eyeAltitude(state), lights.lights)};
-  return *place;
+void SkyTextures::start(const scene::SkyState& state, KeyName name, double startedAt) {
+  // Sun and moon in the order that the instant has, even where they have changed places by the key instant.
+  const scene::SkyLights lights = scene::lightsAt(state.scene, name.atS);
+  auto ordered = lights.lights;
+  if (lights.bySun != name.bySun) std::swap(ordered[0], ordered[1]);
+  ahead_.tables.start(*state.atmosphere, eyeAltitude(state), ordered);
+  ahead_.light.start(state, name.atS);
+  ahead_.name = name;
+  ahead_.startedAt = startedAt;
 }
 
-void SkyTextures::updateLive(const scene::SkyState& state) {
+// Completes the key instant, where it is not the one under way from its start.
+void SkyTextures::make(const scene::SkyState& state, KeyName name, Key& key) {
+  if (ahead_.name != name) start(state, name, 0.0);
+  ahead_.tables.computeTo(ahead_.tables.rows());
+  std::swap(key.tables, ahead_.tables.tables());
+  key.name = name;
+  ahead_.name.reset();
+}
+
+void SkyTextures::keep(const scene::SkyState& state, KeyName first, KeyName second) {
+  if (keys_[0].name == second || keys_[1].name == first) std::swap(keys_[0], keys_[1]);
+  if (keys_[0].name != first && ahead_.name == second) make(state, second, keys_[1]);  // before it is lost
+  if (keys_[0].name != first) make(state, first, keys_[0]);
+  if (keys_[1].name != second) make(state, second, keys_[1]);
+}
+
+void SkyTextures::prepareNext(scene::SkyState& state, double before) {
+  constexpr double kReady = 0.9;  // share of the interval by which all is done
+  const bool forward = state.secondsAfter >= lastS_;
+  const double passed = (state.secondsAfter - before) / kKeyS, share = forward ? passed : 1.0 - passed;
+  const KeyName next{forward ? before + 2.0 * kKeyS : before - kKeyS, state.litBySun};
+  if (ahead_.name != next) {
+    start(state, next, share);
+    return;
+  }
+  const double ready = std::max(kReady, 0.5 * (1.0 + ahead_.startedAt));
+  const double done = std::min((share - ahead_.startedAt) / (ready - ahead_.startedAt), 1.0);
+  const int rows = ahead_.tables.rows(), all = rows + scene::ClearSkyKeyInProgress::kParts,
+            upTo = static_cast<int>(std::ceil(done * all));
+  ahead_.tables.computeTo(std::min(upTo, rows));
+  ahead_.light.computeTo(upTo - rows);
+  if (upTo == all) state.clearSkyAhead = ahead_.light.key();
+}
+
+void SkyTextures::updateLive(scene::SkyState& state) {
   if (atmosphere_ != state.atmosphere || eyeAltitudeM_ != eyeAltitude(state)) {
-    keys_ = {};
+    for (Key& key : keys_) key.name.reset();
+    ahead_.name.reset();
     shown_.reset();
     atmosphere_ = state.atmosphere;
     eyeAltitudeM_ = eyeAltitude(state);
   }
-  put(keyLight_, shading::keyLightTable(state), kFull);
+  shading::keyLightTable(state, keyLightTable_);
+  put(keyLight_, keyLightTable_, kFull);
   const double before = std::floor(state.secondsAfter / kKeyS) * kKeyS;
+  const KeyName first{before, state.litBySun}, second{before + kKeyS, state.litBySun};
   // Whole steps of the weight, so that pictures between them upload nothing.
   const int weight = static_cast<int>((state.secondsAfter - before) / kKeyS * kWeights);
-  if (shown_ == std::pair{before, weight}) return;
-  const Key& first = keyAt(state, before);
-  if (first.bySun != state.litBySun || keyAt(state, before + kKeyS).bySun != state.litBySun) {
-    // Sun and moon change places: their tables count azimuths from different lights.
-    update(state);
-    return;
+  if (shown_ != std::pair{first, weight}) {
+    keep(state, first, second);
+    const sky::SkyTables &a = keys_[0].tables, &b = keys_[1].tables;
+    const float w = static_cast<float>(weight) / kWeights;
+    blend(a.skyView, b.skyView, w, blended_.skyView);
+    blend(a.aerialInscatter, b.aerialInscatter, w, blended_.aerialInscatter);
+    blend(a.aerialTransmittance, b.aerialTransmittance, w, blended_.aerialTransmittance);
+    upload(state, blended_);
+    shown_ = {first, weight};
   }
-  const Key& a = keyAt(state, before);
-  const Key& b = keyAt(state, before + kKeyS);
-  const float w = static_cast<float>(weight) / kWeights;
-  blend(a.tables.skyView, b.tables.skyView, w, blended_.skyView);
-  blend(a.tables.aerialInscatter, b.tables.aerialInscatter, w, blended_.aerialInscatter);
-  blend(a.tables.aerialTransmittance, b.tables.aerialTransmittance, w, blended_.aerialTransmittance);
-  upload(state, blended_);
-  shown_ = {before, weight};
+  prepareNext(state, before);
+  lastS_ = state.secondsAfter;
 }
 
 void SkyTextures::bind(const gpu::Program& program) const {

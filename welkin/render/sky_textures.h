@@ -18,29 +18,48 @@ class SkyTextures {
  public:
   // Computes the tables for a sky and its eye, and uploads them.
   void update(const scene::SkyState& state);
-  // The same for frame after frame: the tables of two key instants, kKeyS apart, blended. Costs next to
-  // nothing but where a key instant is passed. A pure function of the scene and the instant as well, whatever
-  // was asked for before: blended linearly, tables of an interval differ from exact ones by less than a part
-  // in a hundred at dusk.
-  void updateLive(const scene::SkyState& state);
-  static constexpr double kKeyS = 30.0;
+  // The same for frame after frame: the tables of two key instants (scene::ClearSkyKey), blended. A pure
+  // function of the scene and the instant as well, whatever was asked for before: blended linearly, tables of
+  // an interval differ from exact ones by less than a part in a hundred at dusk.
+  //
+  // While time runs through an interval, the tables of the key instant after it are made a few rows at a
+  // time, and with them state.clearSkyAhead, so that no frame has to wait for them. Where time jumps, or the
+  // sun hands over to the moon, two key instants are made at once. Allocates nothing once it has made three.
+  void updateLive(scene::SkyState& state);
   // Binds those that the program asks for.
   void bind(const gpu::Program& program) const;
 
  private:
-  struct Key {
+  struct KeyName {
     double atS = 0.0;
     bool bySun = false;  // which light the azimuths count from
+    bool operator==(const KeyName&) const = default;
+  };
+  struct Key {
+    std::optional<KeyName> name;  // none: nothing in it yet
     sky::SkyTables tables;
   };
-  const Key& keyAt(const scene::SkyState& state, double atS);
+  // The key instant that comes next, being made.
+  struct Ahead {
+    std::optional<KeyName> name;
+    double startedAt = 0.0;  // share of the interval that had passed
+    sky::SkyTablesInProgress tables;
+    scene::ClearSkyKeyInProgress light;
+  };
+  void keep(const scene::SkyState& state, KeyName first, KeyName second);
+  void make(const scene::SkyState& state, KeyName name, Key& key);
+  void start(const scene::SkyState& state, KeyName name, double startedAt);
+  void prepareNext(scene::SkyState& state, double before);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
 
   std::shared_ptr<const sky::Atmosphere> atmosphere_;  // that the keys are of
   double eyeAltitudeM_ = 0.0;
-  std::array<std::optional<Key>, 2> keys_;
+  std::array<Key, 2> keys_;  // before and after the instant
+  Ahead ahead_;
+  double lastS_ = 0.0;  // the instant of the last update
   sky::SkyTables blended_;
-  std::optional<std::pair<double, int>> shown_;  // key instant and weight that are uploaded
+  Image<float> keyLightTable_;
+  std::optional<std::pair<KeyName, int>> shown_;  // first key instant and weight that are uploaded
   gpu::Texture2D transmittance_, skyView_, keyLight_;
   gpu::Texture3D inscatter_, through_;
 };

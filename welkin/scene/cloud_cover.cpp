@@ -2,9 +2,11 @@
 #include "welkin/scene/cloud_cover.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "welkin/core/random.h"
@@ -93,25 +95,41 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
   return result;
 }
 
-std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weather::Weather& weather,
-                                                  const std::vector<LayerCalibration>& calibration,
-                                                  std::shared_ptr<const field::CloudNoise> noise,
-                                                  double secondsAfter) {
-  std::vector<field::CloudLayer> shapes;
-  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    field::CloudLayer shape = shapeOf(weather.layers[i], calibration[i].seed, secondsAfter);
-    shape.threshold = calibration[i].threshold;
-    shape.extinction = calibration[i].extinction;
-    if (scene.drift.windDeg != 0.0) {
-      // Where the turning wind has taken it, less where the wind as described would have.
-      const weather::Layer& layer = weather.layers[i];
-      const glm::dvec2 wandered = windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter) -
-                                  windPath({}, 0, layer.windFromDeg, secondsAfter);
-      shape.driftM += glm::vec2(layer.windSpeedMps * wandered);
-    }
-    shapes.push_back(shape);
+namespace {
+
+field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
+                          const LayerCalibration& calibration, double secondsAfter) {
+  field::CloudLayer shape = shapeOf(layer, calibration.seed, secondsAfter);
+  shape.threshold = calibration.threshold;
+  shape.extinction = calibration.extinction;
+  if (scene.drift.windDeg != 0.0) {
+    // Where the turning wind has taken it, less where the wind as described would have.
+    const glm::dvec2 wandered = windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter) -
+                                windPath({}, 0, layer.windFromDeg, secondsAfter);
+    shape.driftM += glm::vec2(layer.windSpeedMps * wandered);
   }
-  return std::make_shared<field::CloudField>(std::move(noise), std::move(shapes), scene.place.altitudeM);
+  return shape;
+}
+
+}  // namespace
+
+field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
+                           const std::vector<LayerCalibration>& calibration,
+                           std::shared_ptr<const field::CloudNoise> noise, double secondsAfter) {
+  std::vector<field::CloudLayer> layers;
+  for (std::size_t i = 0; i < weather.layers.size(); ++i)
+    layers.push_back(layerAt(scene, weather.layers[i], calibration[i], secondsAfter));
+  return {std::move(noise), std::move(layers), scene.place.altitudeM};
+}
+
+void moveClouds(const Scene& scene, const weather::Weather& weather,
+                const std::vector<LayerCalibration>& calibration, double secondsAfter,
+                field::CloudField& clouds) {
+  std::array<field::CloudLayer, field::kMaxLayers> layers;
+  const std::size_t count = clouds.layers().size();
+  for (std::size_t i = 0; i < count; ++i)
+    layers[i] = layerAt(scene, weather.layers[i], calibration[i], secondsAfter);
+  clouds.setLayers(std::span(layers).first(count));
 }
 
 DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,

@@ -42,10 +42,13 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
                                               const std::shared_ptr<const field::CloudNoise>& noise);
 
 // The clouds `secondsAfter` the scene's time, all layers as if they were volumes.
-std::shared_ptr<const field::CloudField> cloudsAt(const Scene& scene, const weather::Weather& weather,
-                                                  const std::vector<LayerCalibration>& calibration,
-                                                  std::shared_ptr<const field::CloudNoise> noise,
-                                                  double secondsAfter);
+field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
+                           const std::vector<LayerCalibration>& calibration,
+                           std::shared_ptr<const field::CloudNoise> noise, double secondsAfter);
+// The same in the place of clouds of the same scene at another instant. Allocates nothing.
+void moveClouds(const Scene& scene, const weather::Weather& weather,
+                const std::vector<LayerCalibration>& calibration, double secondsAfter,
+                field::CloudField& clouds);
 
 // What the clouds hide of the sky above the place.
 struct DeliveredCover {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 #include <utility>
 
 #include "welkin/core/units.h"
@@ -38,22 +39,21 @@ double diffuseTransmittance(const Scene& scene, const weather::Weather& weather,
   return through;
 }
 
-ClearSkyKey clearSkyKey(const SkyState& s, double atS, const SkyState* previous) {
-  if (previous)
-    for (const ClearSkyKey& key : previous->clearSky)
-      if (key.atS == atS) return key;
-  const sky::Atmosphere& atmosphere = *s.atmosphere;
-  const std::vector<sky::Light> lights = lightsAt(s.scene, atS).lights;
-  const double ground = atmosphere.groundAltitudeM();
-  return {atS, atmosphere.skyIlluminance(ground, lights),
-          atmosphere.skyIlluminance(std::max(10000.0, ground + 1000.0), lights)};
+ClearSkyKey clearSkyKey(const SkyState& s, double atS) {
+  for (const ClearSkyKey& key : s.clearSky)
+    if (key.atS == atS) return key;
+  if (s.clearSkyAhead && s.clearSkyAhead->atS == atS) return *s.clearSkyAhead;
+  ClearSkyKeyInProgress making;
+  making.start(s, atS);
+  making.computeTo(ClearSkyKeyInProgress::kParts);
+  return making.key();
 }
 
-std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s, const SkyState* previous) {
+std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s) {
   const double before = std::floor(s.secondsAfter / ClearSkyKey::kKeyS) * ClearSkyKey::kKeyS;
-  const ClearSkyKey key = clearSkyKey(s, before, previous);
+  const ClearSkyKey key = clearSkyKey(s, before);
   if (s.secondsAfter == before) return {key, key};
-  return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS, previous)};
+  return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS)};
 }
 
 AmbientLight ambientLight(const SkyState& s) {
@@ -124,45 +124,63 @@ SkyLights lightsAt(const Scene& scene, double secondsAfter) {
   const sky::Light sun = sky::sunLight(l.ephemeris), moon = sky::moonLight(l.ephemeris);
   // The sun lights the clouds until it stands where its light no longer reaches any of them.
   l.bySun = l.ephemeris.sun.elevationDeg > -7.0;
-  l.lights = l.bySun ? std::vector{sun, moon} : std::vector{moon, sun};
+  l.lights = l.bySun ? std::array{sun, moon} : std::array{moon, sun};
   return l;
 }
 
+void ClearSkyKeyInProgress::start(const SkyState& state, double atS) {
+  atmosphere_ = state.atmosphere;
+  lights_ = lightsAt(state.scene, atS).lights;
+  key_ = {.atS = atS};
+  done_ = 0;
+}
+
+void ClearSkyKeyInProgress::computeTo(int part) {
+  constexpr int kRings = sky::Atmosphere::kSkyRings;
+  const double ground = atmosphere_->groundAltitudeM(), high = std::max(10000.0, ground + 1000.0);
+  for (; done_ < std::min(part, kParts); ++done_) {
+    const bool low = done_ < kRings;
+    (low ? key_.ground : key_.high) +=
+        atmosphere_->skyIlluminanceOfRing(low ? ground : high, lights_, done_ % kRings);
+  }
+}
+
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous) {
+  if (previous) {
+    SkyState s = *previous;
+    s.scene = scene;
+    moveSky(s, secondsAfter);
+    return s;
+  }
   SkyState s;
   s.scene = scene;
-  s.secondsAfter = secondsAfter;
-  s.weather = previous ? previous->weather : weatherOf(scene);
-
-  const auto noise = previous ? previous->clouds->sharedNoise()
-                              : field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
-  s.calibration = previous ? previous->calibration : calibrateClouds(scene, s.weather, noise);
+  s.weather = weatherOf(scene);
+  const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
+  s.calibration = calibrateClouds(scene, s.weather, noise);
   s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
-  if (previous) {
-    s.cover = previous->cover;
-    s.sheetCover = previous->sheetCover;
-    s.skyCover = previous->skyCover;
-  } else {
-    DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter);
-    s.cover = std::move(cover.layers);
-    s.sheetCover = std::move(cover.sheets);
-    s.skyCover = cover.sky;
-  }
-  s.warnings = previous ? previous->warnings : textureWarnings(scene);
-
-  s.atmosphere =
-      previous ? previous->atmosphere
-               : std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
+  DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter);
+  s.cover = std::move(cover.layers);
+  s.sheetCover = std::move(cover.sheets);
+  s.skyCover = cover.sky;
+  s.warnings = textureWarnings(scene);
+  s.atmosphere = std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
                                                    scene.place.altitudeM, glm::vec3(scene.ground.albedo));
-  SkyLights lights = lightsAt(scene, secondsAfter);
+  for (ClearSkyKey& none : s.clearSky) none.atS = std::numeric_limits<double>::quiet_NaN();
+  moveSky(s, secondsAfter);
+  return s;
+}
+
+void moveSky(SkyState& s, double secondsAfter) {
+  s.secondsAfter = secondsAfter;
+  moveClouds(s.scene, s.weather, s.calibration, secondsAfter, *s.clouds);
+  const SkyLights lights = lightsAt(s.scene, secondsAfter);
   s.time = lights.time;
   s.ephemeris = lights.ephemeris;
-  s.lights = std::move(lights.lights);
+  s.lights = lights.lights;
   s.litBySun = lights.bySun;
   s.headingDeg = headingOf(s);
-  s.clearSky = clearSkyKeys(s, previous);
+  s.clearSky = clearSkyKeys(s);
   s.ambient = ambientLight(s);
-  return s;
 }
 
 }  // namespace welkin::scene

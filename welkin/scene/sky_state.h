@@ -5,9 +5,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
 #include "welkin/scene/scene.h"
 #include "welkin/sky/atmosphere.h"
@@ -33,14 +35,16 @@ struct ClearSkyKey {
   static constexpr double kKeyS = 30.0;
   double atS = 0.0;
   glm::vec3 ground{0}, high{0};  // at the ground, at 10 km; lux
+
+  bool operator==(const ClearSkyKey&) const = default;
 };
 
 // Sun and moon of a scene at an instant.
 struct SkyLights {
   UtcTime time;
   sky::Ephemeris ephemeris;
-  std::vector<sky::Light> lights;  // lights[0] is the one that lights the clouds
-  bool bySun = true;               // it is the sun
+  std::array<sky::Light, 2> lights;  // sun and moon; lights[0] is the one that lights the clouds
+  bool bySun = true;                 // it is the sun
 };
 SkyLights lightsAt(const Scene& scene, double secondsAfter);
 
@@ -50,12 +54,13 @@ struct SkyState {
   double secondsAfter = 0.0;
   weather::Weather weather;
   sky::Ephemeris ephemeris;
-  std::vector<sky::Light> lights;  // as SkyLights
+  std::array<sky::Light, 2> lights;  // as SkyLights
   bool litBySun = true;
   std::shared_ptr<const sky::Atmosphere> atmosphere;
-  std::shared_ptr<const field::CloudField> clouds;
+  std::optional<field::CloudField> clouds;    // always there
   std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
   std::array<ClearSkyKey, 2> clearSky;        // before and after the instant
+  std::optional<ClearSkyKey> clearSkyAhead;   // of another, where it is known: saves time to a move there
   AmbientLight ambient;
   std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
@@ -73,5 +78,23 @@ weather::Weather weatherOf(const Scene& scene);
 // delivered cover is measured only without `previous`, as it costs more than the rest: a sequence carries
 // that of its first picture.
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
+
+// The same in the place of the sky of the same scene at another instant. Allocates nothing.
+void moveSky(SkyState& state, double secondsAfter);
+
+// A key instant in portions, for frame loops: the same key whatever the portions.
+class ClearSkyKeyInProgress {
+ public:
+  static constexpr int kParts = 2 * sky::Atmosphere::kSkyRings;
+  void start(const SkyState& state, double atS);   // of which it keeps the atmosphere
+  void computeTo(int part);                        // the first `part` of them
+  const ClearSkyKey& key() const { return key_; }  // complete after computeTo(kParts)
+
+ private:
+  std::shared_ptr<const sky::Atmosphere> atmosphere_;
+  std::array<sky::Light, 2> lights_;
+  ClearSkyKey key_;
+  int done_ = 0;
+};
 
 }  // namespace welkin::scene

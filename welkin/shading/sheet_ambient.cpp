@@ -56,7 +56,7 @@ namespace {
 // clouds have diffused.
 class Descent {
  public:
-  explicit Descent(const scene::SkyState& state) : state_(state), direct_(state.lights.size(), 1.0) {}
+  explicit Descent(const scene::SkyState& state) : state_(state) { direct_.fill(1.0); }
 
   // through(sine): what the layer lets down of light of this sine of elevation.
   template <class Through>
@@ -101,7 +101,7 @@ class Descent {
 
  private:
   const scene::SkyState& state_;
-  std::vector<double> direct_;
+  std::array<double, 2> direct_;  // of the state's lights
   double sky_ = 1.0;
   glm::vec3 diffused_{0.0f};  // illuminance, lux
 };
@@ -125,6 +125,12 @@ std::vector<VolumeInSky> volumesIn(const scene::SkyState& state) {
 LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
                             std::span<const VolumeInSky> volumes) {
   LightUnderSheets out;
+  lightUnder(state, sheets, volumes, out);
+  return out;
+}
+
+void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                std::span<const VolumeInSky> volumes, LightUnderSheets& out) {
   out.ambient = state.ambient;
   out.sheets.resize(sheets.size());
   out.sunThrough.resize(sheets.size());
@@ -163,7 +169,6 @@ LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetI
   for (std::size_t i = 0; i < sheets.size(); ++i)
     if (sheets[i].heightM > state.scene.camera.eyeM) a.clearAir *= out.sunThrough[i];
   a.haze = 0.75f * a.skyOnGround / kPiF + 0.25f * a.ground;
-  return out;
 }
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {

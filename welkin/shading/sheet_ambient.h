@@ -71,6 +71,9 @@ std::vector<VolumeInSky> volumesIn(const scene::SkyState& state);
 // shadows are drawn.
 LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
                             std::span<const VolumeInSky> volumes = {});
+// The same into `out`, which allocates nothing once it has held as many sheets.
+void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                std::span<const VolumeInSky> volumes, LightUnderSheets& out);
 
 // Light at a height under sheets: the mean luminance of the sky there as a multiple of the clear sky's (xyz),
 // and the mean share of the key light (w).

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
@@ -19,6 +20,26 @@ constexpr float kKeyLightReach = 0.04f;
 std::string layerMember(std::size_t i, const char* member) {
   return "uLayers[" + std::to_string(i) + "]." + member;
 }
+
+// Fills a list anew in the memory of its last filling: names that were there before are not allocated again.
+class Refill {
+ public:
+  explicit Refill(Uniforms& list) : list_(list) {}
+  ~Refill() { list_.resize(count_); }
+  Refill(const Refill&) = delete;
+  Refill& operator=(const Refill&) = delete;
+
+  void put(std::string_view owner, std::string_view member, const UniformValue& value) {
+    if (count_ == list_.size()) list_.emplace_back();
+    auto& [name, place] = list_[count_++];
+    name.assign(owner).append(member);
+    place = value;
+  }
+
+ private:
+  Uniforms& list_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -37,23 +58,28 @@ Uniforms cloudUniforms(const scene::SkyState& state) {
 
 Uniforms skyUniforms(const scene::SkyState& state) {
   Uniforms u;
+  skyUniforms(state, u);
+  return u;
+}
+
+void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
+  Refill u(uniforms);
   const scene::Scene& s = state.scene;
-  sky::visitFields(state.atmosphere->uniforms(), [&](const char* name, auto value) {
-    u.emplace_back(std::string("uAtmosphere.") + name, value);
-  });
-  u.emplace_back("uEyeM", static_cast<float>(s.camera.eyeM));
-  u.emplace_back("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
-  u.emplace_back("uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
-  u.emplace_back("uKeyDirection", state.lights[0].direction);
-  u.emplace_back("uKeyLightTopM", kKeyLightTopM);
-  u.emplace_back("uKeyLightReach", kKeyLightReach);
-  u.emplace_back("uSkyLow", state.ambient.skyLow);
-  u.emplace_back("uSkyHigh", state.ambient.skyHigh);
-  u.emplace_back("uSkyOnGround", state.ambient.skyOnGround);
-  u.emplace_back("uGroundLight", state.ambient.ground);
-  u.emplace_back("uClearAir", state.ambient.clearAir);
-  u.emplace_back("uHazeLuminance", state.ambient.haze);
-  u.emplace_back("uGroundAlbedo", glm::vec3(s.ground.albedo));
+  sky::visitFields(state.atmosphere->uniforms(),
+                   [&](const char* name, auto value) { u.put("uAtmosphere.", name, value); });
+  u.put("", "uEyeM", static_cast<float>(s.camera.eyeM));
+  u.put("", "uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
+  u.put("", "uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
+  u.put("", "uKeyDirection", state.lights[0].direction);
+  u.put("", "uKeyLightTopM", kKeyLightTopM);
+  u.put("", "uKeyLightReach", kKeyLightReach);
+  u.put("", "uSkyLow", state.ambient.skyLow);
+  u.put("", "uSkyHigh", state.ambient.skyHigh);
+  u.put("", "uSkyOnGround", state.ambient.skyOnGround);
+  u.put("", "uGroundLight", state.ambient.ground);
+  u.put("", "uClearAir", state.ambient.clearAir);
+  u.put("", "uHazeLuminance", state.ambient.haze);
+  u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 
   double diameter = 0.0, weight = 1e-9;
   for (const weather::Layer& layer : state.weather.layers) {
@@ -63,10 +89,10 @@ Uniforms skyUniforms(const scene::SkyState& state) {
   }
   const optics::DropletPhase droplets =
       optics::dropletPhase(static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
-  u.emplace_back("uDroplets.gHg", droplets.gHg);
-  u.emplace_back("uDroplets.gDraine", droplets.gDraine);
-  u.emplace_back("uDroplets.alpha", droplets.alpha);
-  u.emplace_back("uDroplets.wDraine", droplets.wDraine);
+  u.put("", "uDroplets.gHg", droplets.gHg);
+  u.put("", "uDroplets.gDraine", droplets.gDraine);
+  u.put("", "uDroplets.alpha", droplets.alpha);
+  u.put("", "uDroplets.wDraine", droplets.wDraine);
 
   // Discs: illuminance spread over the disc's solid angle. The moon's is its full phase's, dimmed by the lit
   // share as drawn.
@@ -75,19 +101,18 @@ Uniforms skyUniforms(const scene::SkyState& state) {
   auto discLuminance = [](const sky::Light& light, double radius, double share) {
     return light.illuminance / static_cast<float>(kPi * radius * radius * std::max(share, 0.005));
   };
-  u.emplace_back("uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
-  u.emplace_back("uSunDirection", sun.direction);
-  u.emplace_back("uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
-  u.emplace_back("uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));
-  u.emplace_back("uMoonDirection", moon.direction);
-  u.emplace_back("uMoonRadius", static_cast<float>(e.moon.angularRadiusRad));
-  u.emplace_back("uMoonLuminance", discLuminance(moon, e.moon.angularRadiusRad, e.moonIlluminatedFraction));
-  return u;
+  u.put("", "uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
+  u.put("", "uSunDirection", sun.direction);
+  u.put("", "uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
+  u.put("", "uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));
+  u.put("", "uMoonDirection", moon.direction);
+  u.put("", "uMoonRadius", static_cast<float>(e.moon.angularRadiusRad));
+  u.put("", "uMoonLuminance", discLuminance(moon, e.moon.angularRadiusRad, e.moonIlluminatedFraction));
 }
 
-Image<float> keyLightTable(const scene::SkyState& state) {
+void keyLightTable(const scene::SkyState& state, Image<float>& table) {
   constexpr int kHeights = 64, kSines = 16;
-  Image<float> table(kHeights, kSines, 3);
+  if (table.data.empty()) table = Image<float>(kHeights, kSines, 3);
   const sky::Light& key = state.lights[0];
   for (int y = 0; y < kSines; ++y)
     for (int x = 0; x < kHeights; ++x) {
@@ -97,7 +122,6 @@ Image<float> keyLightTable(const scene::SkyState& state) {
                                                     state.scene.place.altitudeM + height, sine);
       for (int c = 0; c < 3; ++c) table.at(x, y, c) = light[c];
     }
-  return table;
 }
 
 MarchSettings marchSettings(scene::Quality quality) {

@@ -28,10 +28,13 @@ Uniforms cloudUniforms(const scene::SkyState& state);
 
 // lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
 Uniforms skyUniforms(const scene::SkyState& state);
+// The same into a list that was filled before: allocates nothing.
+void skyUniforms(const scene::SkyState& state, Uniforms& uniforms);
 
 // The light that reaches clouds through the air: RGB illuminance, lux, by height (columns) and the sine of
 // the light's elevation (rows).
-Image<float> keyLightTable(const scene::SkyState& state);
+// Allocates only where the table is empty.
+void keyLightTable(const scene::SkyState& state, Image<float>& table);
 
 // How finely to march.
 struct MarchSettings {

@@ -92,7 +92,7 @@ glm::vec3 Atmosphere::transmittanceToSpace(double altitudeM, double mu) const {
 }
 
 glm::vec3 Atmosphere::skyLuminance(double altitudeM, glm::vec3 direction,
-                                   const std::vector<Light>& lights) const {
+                                   std::span<const Light> lights) const {
   shared::Atmosphere a = shared::fromUniforms(uniforms_);
   vec3 sum(0.0f);
   for (std::size_t i = 0; i == 0 || 2 * i < lights.size(); ++i) {
@@ -104,22 +104,25 @@ glm::vec3 Atmosphere::skyLuminance(double altitudeM, glm::vec3 direction,
   return sum;
 }
 
-glm::vec3 Atmosphere::skyIlluminance(double altitudeM, const std::vector<Light>& lights) const {
-  // Midpoints in elevation, squeezed towards the horizon where luminance changes fast, and in azimuth.
-  constexpr int kElevations = 24, kAzimuths = 24;
+glm::vec3 Atmosphere::skyIlluminance(double altitudeM, std::span<const Light> lights) const {
   vec3 sum(0.0f);
-  for (int e = 0; e < kElevations; ++e) {
-    const float x = (static_cast<float>(e) + 0.5f) / kElevations;
-    const float angle = static_cast<float>(0.5 * kPi) * x * x;
-    const float width = static_cast<float>(kPi) * x / kElevations;
-    const float weight =
-        std::sin(angle) * std::cos(angle) * width * static_cast<float>(2.0 * kPi) / kAzimuths;
-    for (int f = 0; f < kAzimuths; ++f) {
-      const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(2.0 * kPi) / kAzimuths;
-      const vec3 zero = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
-      sum += weight *
-             skyLuminance(altitudeM, shared::atmosphereDirection(std::sin(angle), azimuth, zero), lights);
-    }
+  for (int ring = 0; ring < kSkyRings; ++ring) sum += skyIlluminanceOfRing(altitudeM, lights, ring);
+  return sum;
+}
+
+glm::vec3 Atmosphere::skyIlluminanceOfRing(double altitudeM, std::span<const Light> lights, int ring) const {
+  // Midpoints in elevation, squeezed towards the horizon where luminance changes fast, and in azimuth.
+  constexpr int kAzimuths = 24;
+  const float x = (static_cast<float>(ring) + 0.5f) / kSkyRings;
+  const float angle = static_cast<float>(0.5 * kPi) * x * x;
+  const float width = static_cast<float>(kPi) * x / kSkyRings;
+  const float weight = std::sin(angle) * std::cos(angle) * width * static_cast<float>(2.0 * kPi) / kAzimuths;
+  const vec3 zero = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
+  vec3 sum(0.0f);
+  for (int f = 0; f < kAzimuths; ++f) {
+    const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(2.0 * kPi) / kAzimuths;
+    sum +=
+        weight * skyLuminance(altitudeM, shared::atmosphereDirection(std::sin(angle), azimuth, zero), lights);
   }
   return sum;
 }

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "welkin/core/image.h"
@@ -85,9 +86,12 @@ class Atmosphere {
   glm::vec3 transmittanceToSpace(double altitudeM, double mu) const;
   // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs). Towards the
   // ground: of the air in front of it alone.
-  glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, const std::vector<Light>& lights) const;
+  glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, std::span<const Light> lights) const;
   // Illuminance of a horizontal plane facing up by the clear sky alone.
-  glm::vec3 skyIlluminance(double altitudeM, const std::vector<Light>& lights) const;
+  glm::vec3 skyIlluminance(double altitudeM, std::span<const Light> lights) const;
+  // The part of it that comes from one of kSkyRings rings of the sky; their sum, from the first on, is all.
+  static constexpr int kSkyRings = 24;
+  glm::vec3 skyIlluminanceOfRing(double altitudeM, std::span<const Light> lights, int ring) const;
 
  private:
   AtmosphereUniforms uniforms_;
@@ -105,6 +109,24 @@ struct SkyTables {
                                       // elevation, distance)
   Volume<float> aerialTransmittance;  // RGB
 };
-SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM, const std::vector<Light>& lights);
+SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM, std::span<const Light> lights);
+
+// The same tables a few rows at a time, for those who have frames to draw in between.
+class SkyTablesInProgress {
+ public:
+  // Starts anew, in the memory that is there. The atmosphere must live until the last row.
+  void start(const Atmosphere& atmosphere, double eyeAltitudeM, std::span<const Light> lights);
+  int rows() const;                        // all there are; after start()
+  void computeTo(int row);                 // the first `row` of them
+  SkyTables& tables() { return tables_; }  // complete after computeTo(rows())
+
+ private:
+  const Atmosphere* atmosphere_ = nullptr;
+  double eyeAltitudeM_ = 0.0;
+  glm::vec3 zeroAzimuth_{1, 0, 0};
+  std::vector<Light> lights_;
+  int done_ = 0;
+  SkyTables tables_;
+};
 
 }  // namespace welkin::sky

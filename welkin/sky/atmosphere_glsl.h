@@ -33,7 +33,7 @@ inline Atmosphere fromUniforms(const AtmosphereUniforms& u) {
 }
 
 // Lights 2 i and 2 i + 1 of a list; a missing second one is dark.
-inline AtmosphereLights lightPair(const std::vector<Light>& lights, std::size_t i) {
+inline AtmosphereLights lightPair(std::span<const Light> lights, std::size_t i) {
   AtmosphereLights p{vec3(0, 0, 1), vec3(0), vec3(0, 0, 1), vec3(0)};
   if (2 * i < lights.size()) {
     p.direction0 = lights[2 * i].direction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "welkin/core/parallel.h"
 #include "welkin/sky/atmosphere.h"
@@ -40,10 +41,11 @@ int columnsOf(const Job& job, int width) {
   return mirrored ? (width + 1) / 2 : width;
 }
 
-void addSkyView(const Job& job, Image<float>& table) {
+// Rows [first, last) of the table.
+void addSkyView(const Job& job, int first, int last, Image<float>& table) {
   const int columns = columnsOf(job, table.width);
-  parallelFor(static_cast<std::size_t>(table.height), 4, [&](std::size_t begin, std::size_t end) {
-    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+  parallelFor(static_cast<std::size_t>(last - first), 4, [&](std::size_t begin, std::size_t end) {
+    for (int j = first + static_cast<int>(begin); j < first + static_cast<int>(end); ++j) {
       for (int i = 0; i < columns; ++i) {
         const vec2 p =
             shared::atmosphereSkyViewParameters(static_cast<float>(i), static_cast<float>(j), job.horizonMu);
@@ -58,12 +60,14 @@ void addSkyView(const Job& job, Image<float>& table) {
   });
 }
 
-void addAerial(const Job& job, Volume<float>& inscatterTable, Volume<float>& transmittanceTable) {
+// Elevations [first, last) of the tables.
+void addAerial(const Job& job, int first, int last, Volume<float>& inscatterTable,
+               Volume<float>& transmittanceTable) {
   constexpr int kStepsPerSlice = 2;
   const int nx = inscatterTable.nx, ny = inscatterTable.ny, nz = inscatterTable.nz;
   const int columns = columnsOf(job, nx);
-  parallelFor(static_cast<std::size_t>(ny), 1, [&](std::size_t begin, std::size_t end) {
-    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+  parallelFor(static_cast<std::size_t>(last - first), 1, [&](std::size_t begin, std::size_t end) {
+    for (int j = first + static_cast<int>(begin); j < first + static_cast<int>(end); ++j) {
       const float y = 2.0f * static_cast<float>(j) / static_cast<float>(ny - 1) - 1.0f;
       const float mu = shared::atmosphereYToMu(y, job.horizonMu);
       for (int i = 0; i < columns; ++i) {
@@ -94,52 +98,82 @@ void addAerial(const Job& job, Volume<float>& inscatterTable, Volume<float>& tra
   });
 }
 
-// Lights without those that add less than a ten-thousandth to the sky: the moon by day, the sun at night.
-// Judged by the zenith, which is the darkest part of a sky lit by one light.
-std::vector<Light> lightsThatShow(const Atmosphere& atmosphere, double eyeAltitudeM,
-                                  const std::vector<Light>& lights) {
+// Puts into `kept` the lights without those that add less than a ten-thousandth to the sky: the moon by day,
+// the sun at night. Judged by the zenith, which is the darkest part of a sky lit by one light.
+void keepThoseThatShow(const Atmosphere& atmosphere, double eyeAltitudeM, std::span<const Light> lights,
+                       std::vector<Light>& kept) {
   constexpr float kNegligible = 1e-4f;
-  std::vector<float> zenith;
+  const auto zenith = [&](std::span<const Light> by) {
+    return atmosphere.skyLuminance(eyeAltitudeM, vec3(0, 0, 1), by).y;
+  };
   float sum = 0.0f;
-  for (const Light& light : lights) {
-    zenith.push_back(atmosphere.skyLuminance(eyeAltitudeM, vec3(0, 0, 1), {light}).y);
-    sum += zenith.back();
-  }
-  const float airglow = atmosphere.skyLuminance(eyeAltitudeM, vec3(0, 0, 1), {}).y;
-  std::vector<Light> kept;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    if (zenith[i] - airglow > kNegligible * sum) kept.push_back(lights[i]);
-  }
-  return kept;
+  for (const Light& light : lights) sum += zenith({&light, 1});
+  const float airglow = zenith({});
+  kept.clear();
+  for (const Light& light : lights)
+    if (zenith({&light, 1}) - airglow > kNegligible * sum) kept.push_back(light);
+}
+
+constexpr int kSkyViewRows = static_cast<int>(shared::kSkyViewHeight),
+              kAerialRows = static_cast<int>(shared::kAerialElevations),
+              kRowsPerPair = kSkyViewRows + kAerialRows;
+
+// Noughts, in the memory that is there if there is any.
+template <class Table, class Make>
+void reset(Table& table, const Make& make) {
+  if (table.data.empty())
+    table = make();
+  else
+    std::ranges::fill(table.data, 0.0f);
 }
 
 }  // namespace
 
-SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM,
-                        const std::vector<Light>& allLights) {
-  const std::vector<Light> lights = lightsThatShow(atmosphere, eyeAltitudeM, allLights);
-  Job job;
-  job.a = shared::fromUniforms(atmosphere.uniforms());
-  job.transmittance = {&atmosphere.transmittance()};
-  job.multipleScattering = {&atmosphere.multipleScattering()};
-  job.eyeM = std::max(static_cast<float>(eyeAltitudeM), job.a.groundAltitudeM);
-  job.horizonMu = shared::atmosphereHorizonMu(job.a, job.eyeM);
-  job.direction0 = allLights.empty() ? vec3(1, 0, 0) : vec3(allLights[0].direction);
+void SkyTablesInProgress::start(const Atmosphere& atmosphere, double eyeAltitudeM,
+                                std::span<const Light> lights) {
+  atmosphere_ = &atmosphere;
+  eyeAltitudeM_ = eyeAltitudeM;
+  zeroAzimuth_ = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
+  keepThoseThatShow(atmosphere, eyeAltitudeM, lights, lights_);
+  done_ = 0;
+  const int width = static_cast<int>(shared::kSkyViewWidth);
+  const int nx = static_cast<int>(shared::kAerialAzimuths), nz = static_cast<int>(shared::kAerialDistances);
+  reset(tables_.skyView, [&] { return Image<float>(width, kSkyViewRows, 3); });
+  reset(tables_.aerialInscatter, [&] { return Volume<float>(nx, kAerialRows, nz, 3); });
+  reset(tables_.aerialTransmittance, [&] { return Volume<float>(nx, kAerialRows, nz, 3); });
+}
 
-  SkyTables tables;
-  tables.skyView =
-      Image<float>(static_cast<int>(shared::kSkyViewWidth), static_cast<int>(shared::kSkyViewHeight), 3);
-  const int nx = static_cast<int>(shared::kAerialAzimuths), ny = static_cast<int>(shared::kAerialElevations),
-            nz = static_cast<int>(shared::kAerialDistances);
-  tables.aerialInscatter = Volume<float>(nx, ny, nz, 3);
-  tables.aerialTransmittance = Volume<float>(nx, ny, nz, 3);
-  for (std::size_t i = 0; i == 0 || 2 * i < lights.size(); ++i) {
-    job.lights = shared::lightPair(lights, i);
-    addSkyView(job, tables.skyView);
-    addAerial(job, tables.aerialInscatter, tables.aerialTransmittance);
-    job.a.airglow = vec3(0.0f);  // once
+int SkyTablesInProgress::rows() const {
+  return kRowsPerPair * static_cast<int>(std::max<std::size_t>((lights_.size() + 1) / 2, 1));
+}
+
+void SkyTablesInProgress::computeTo(int row) {
+  Job job;
+  job.transmittance = {&atmosphere_->transmittance()};
+  job.multipleScattering = {&atmosphere_->multipleScattering()};
+  job.direction0 = zeroAzimuth_;
+  while (done_ < std::min(row, rows())) {
+    const int pair = done_ / kRowsPerPair, first = done_ % kRowsPerPair,
+              last = std::min(row - pair * kRowsPerPair, first < kSkyViewRows ? kSkyViewRows : kRowsPerPair);
+    job.a = shared::fromUniforms(atmosphere_->uniforms());
+    if (pair > 0) job.a.airglow = vec3(0.0f);  // once
+    job.eyeM = std::max(static_cast<float>(eyeAltitudeM_), job.a.groundAltitudeM);
+    job.horizonMu = shared::atmosphereHorizonMu(job.a, job.eyeM);
+    job.lights = shared::lightPair(lights_, static_cast<std::size_t>(pair));
+    if (first < kSkyViewRows)
+      addSkyView(job, first, last, tables_.skyView);
+    else
+      addAerial(job, first - kSkyViewRows, last - kSkyViewRows, tables_.aerialInscatter,
+                tables_.aerialTransmittance);
+    done_ += last - first;
   }
-  return tables;
+}
+
+SkyTables makeSkyTables(const Atmosphere& atmosphere, double eyeAltitudeM, std::span<const Light> lights) {
+  SkyTablesInProgress making;
+  making.start(atmosphere, eyeAltitudeM, lights);
+  making.computeTo(making.rows());
+  return std::move(making.tables());
 }
 
 }  // namespace welkin::sky

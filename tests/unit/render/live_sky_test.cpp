@@ -145,6 +145,49 @@ TEST_F(LiveSkyTest, DrawsAllocateNothing) {
   EXPECT_EQ(gAllocations - before, 0);
 }
 
+// Through three key instants of the clear sky, a second at a time.
+TEST_F(LiveSkyTest, UpdatesAllocateNothing) {
+  LiveSky sky;
+  const scene::Scene s = thinScene();
+  sky.update(s, 0.0);
+  sky.update(s, 1.0);
+  drawn(sky);
+  const long before = gAllocations;
+  for (int second = 2; second < 100; ++second) sky.update(s, second);
+  EXPECT_EQ(gAllocations - before, 0);
+}
+
+// So that no update has to make a key instant of the clear sky at once.
+TEST_F(LiveSkyTest, TheNextKeyInstantIsReadyBeforeItsTime) {
+  LiveSky sky;
+  const scene::Scene s = thinScene();
+  sky.update(s, 0.0);
+  for (double at = 0.5; at < 15.0; at += 0.5) sky.update(s, at);
+  EXPECT_FALSE(sky.state().clearSkyAhead);
+  for (double at = 15.0; at < 29.0; at += 0.5) sky.update(s, at);
+  ASSERT_TRUE(sky.state().clearSkyAhead);
+  EXPECT_EQ(sky.state().clearSkyAhead->atS, 60.0);
+  // Backwards as well.
+  for (double at = 29.0; at > 0.5; at -= 0.5) sky.update(s, at);
+  ASSERT_TRUE(sky.state().clearSkyAhead);
+  EXPECT_EQ(sky.state().clearSkyAhead->atS, -30.0);
+}
+
+// Whatever way led there: on, back, over key instants and over a sunset at which the moon takes the clouds.
+TEST_F(LiveSkyTest, AnyWayToAnInstantGivesItsFrame) {
+  for (const double sunElevationDeg : {35.0, 0.0}) {
+    scene::Scene s = thinScene(sunElevationDeg);
+    LiveSky walking;
+    walking.update(s, -40.0);
+    for (const double at : {-20.0, -3.0, 11.0, 29.0, 31.0, 64.0, 45.0, 8.0, 7.0, 1200.0, 1201.0, 1195.0}) {
+      walking.update(s, at);
+      LiveSky direct;
+      direct.update(s, at);
+      EXPECT_EQ(drawn(walking).data, drawn(direct).data) << sunElevationDeg << " degrees, " << at << " s";
+    }
+  }
+}
+
 TEST_F(LiveSkyTest, ComposingOctavesAllocatesNothing) {
   for (const auto kernel :
        {scene::OctaveKernel::kGradient, scene::OctaveKernel::kPallister, scene::OctaveKernel::kCourse}) {

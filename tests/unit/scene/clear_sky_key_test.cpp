@@ -25,13 +25,34 @@ TEST(ClearSkyKey, LightBetweenKeysIsThatOfTheInstant) {
 TEST(ClearSkyKey, ASequenceHasTheStillsLight) {
   Scene s;
   s.time = parseUtcTime("2026-06-21T17:00:00Z");
-  SkyState last = buildSky(s, 0.0);
+  SkyState last = buildSky(s, 0.0), moved = last;
   for (const double t : {10.0, 29.0, 31.0, 400.0, 30.0, -5.0}) {
     last = buildSky(s, t, &last);
+    moveSky(moved, t);
     const SkyState still = buildSky(s, t);
-    EXPECT_EQ(last.ambient.skyLow, still.ambient.skyLow) << t;
-    EXPECT_EQ(last.ambient.skyHigh, still.ambient.skyHigh) << t;
+    for (const SkyState* state : {&last, &moved}) {
+      EXPECT_EQ(state->ambient.skyLow, still.ambient.skyLow) << t;
+      EXPECT_EQ(state->ambient.skyHigh, still.ambient.skyHigh) << t;
+      EXPECT_EQ(state->clearSky, still.clearSky) << t;
+    }
   }
+}
+
+TEST(ClearSkyKey, InPortionsIsTheSame) {
+  Scene s;
+  s.time = parseUtcTime("2026-06-21T17:00:00Z");
+  SkyState state = buildSky(s, 0.0);
+  ClearSkyKeyInProgress making;
+  for (int i = 0; i < 2; ++i) {
+    making.start(state, 90.0);
+    for (int part = 5; part < ClearSkyKeyInProgress::kParts + 5; part += 5) making.computeTo(part);
+    EXPECT_EQ(making.key(), buildSky(s, 90.0).clearSky[0]);
+  }
+  // Known ahead, it is taken.
+  state.clearSkyAhead = making.key();
+  state.clearSkyAhead->ground.x = 1.0f;
+  moveSky(state, 95.0);
+  EXPECT_EQ(state.clearSky[0].ground.x, 1.0f);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void expectDelivered(const std::string& metar) {
     scene.seed = seed;
     const auto clouds =
         cloudsAt(scene, weather, calibrateClouds(scene, weather, noiseOf(seed)), noiseOf(seed), 0.0);
-    const DeliveredCover cover = measureCover(scene, weather, *clouds, 0.0);
+    const DeliveredCover cover = measureCover(scene, weather, clouds, 0.0);
     ASSERT_EQ(cover.layers.size(), layers.size());
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i] += cover.layers[i].deliveredOktas / kSeeds;
     sky += cover.sky.deliveredOktas / kSeeds;
@@ -127,9 +127,11 @@ TEST(CoverDelivery, ALaterSkyIsTheSameFromAnEarlierOneAsFromNothing) {
   const Scene scene = sceneOf("UIBB 180730Z 26006MPS 9999 SCT016CB BKN100 M11/M15 Q1025 NOSIG");
   const SkyState first = buildSky(scene, 0.0);
   const SkyState later = buildSky(scene, 600.0), continued = buildSky(scene, 600.0, &first);
+  SkyState moved = first;
+  moveSky(moved, 600.0);
   ASSERT_EQ(later.clouds->layers().size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    std::vector<float> a, b;
+    std::vector<float> a, b, c;
     auto into = [](std::vector<float>& v) {
       return [&v](const char*, const auto& value) {
         const auto* p = reinterpret_cast<const float*>(&value);
@@ -138,7 +140,9 @@ TEST(CoverDelivery, ALaterSkyIsTheSameFromAnEarlierOneAsFromNothing) {
     };
     forEachMember(later.clouds->layers()[i], into(a));
     forEachMember(continued.clouds->layers()[i], into(b));
+    forEachMember(moved.clouds->layers()[i], into(c));
     EXPECT_EQ(a, b);
+    EXPECT_EQ(a, c);
     EXPECT_NE(later.clouds->layers()[i].driftM, first.clouds->layers()[i].driftM);
   }
 }

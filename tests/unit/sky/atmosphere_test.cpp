@@ -226,8 +226,9 @@ TEST(AtmosphereTables, SameWithAnyNumberOfThreads) {
   for (int threads : {1, 3}) {
     setThreadCount(threads);
     const Atmosphere air({}, 30e3, 100.0, glm::vec3(0.2f));
-    const SkyTables sky = makeSkyTables(
-        air, 500.0, {{{0.6f, 0.0f, 0.8f}, glm::vec3(1e5f)}, {{0.0f, 0.8f, 0.6f}, glm::vec3(5e4f)}});
+    const std::vector<Light> lights = {{{0.6f, 0.0f, 0.8f}, glm::vec3(1e5f)},
+                                       {{0.0f, 0.8f, 0.6f}, glm::vec3(5e4f)}};
+    const SkyTables sky = makeSkyTables(air, 500.0, lights);
     std::vector<float>& all = tables[threads == 1 ? 0 : 1];
     for (const auto* data : {&air.transmittance().data, &air.multipleScattering().data, &sky.skyView.data,
                              &sky.aerialInscatter.data, &sky.aerialTransmittance.data}) {

@@ -160,7 +160,7 @@ TEST(ClearSky, AirglowKeepsNightFromBlack) {
 TEST(ClearSky, LightsAdd) {
   const std::vector<Light> sun = sunAt(8), moon = {{directionAt(40, 120), 5000.0f * moonlightColour()}};
   const glm::vec3 d = directionAt(25, 60);
-  const glm::vec3 both = clearAir().skyLuminance(0.0, d, {sun[0], moon[0]});
+  const glm::vec3 both = clearAir().skyLuminance(0.0, d, std::vector{sun[0], moon[0]});
   const glm::vec3 apart = clearAir().skyLuminance(0.0, d, sun) + clearAir().skyLuminance(0.0, d, moon);
   EXPECT_NEAR(luminance(both), luminance(apart), 1e-3);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "welkin/core/units.h"
 #include "welkin/sky/atmosphere.h"
@@ -202,6 +203,22 @@ TEST(SkyTables, TwoLights) {
           << elevation << " " << azimuth;
     }
   }
+}
+
+TEST(SkyTables, InPortionsAreTheSame) {
+  const Atmosphere air(AtmosphereParams{}, 20e3, 0.0, glm::vec3(0.2f));
+  const std::vector<Light> lights = {{glm::normalize(glm::vec3(1, 0, 0.3)), glm::vec3(1e5f)},
+                                     {glm::normalize(glm::vec3(0, 1, 0.5)), glm::vec3(5e4f)},
+                                     {glm::normalize(glm::vec3(-1, 1, 0.9)), glm::vec3(5e4f)}};
+  const SkyTables whole = makeSkyTables(air, 100.0, lights);
+  SkyTablesInProgress making;
+  making.start(air, 100.0, std::span(lights).first(1));  // and given up
+  making.computeTo(7);
+  making.start(air, 100.0, lights);
+  for (int row = 0; row < making.rows() + 13; row += 13) making.computeTo(row);
+  EXPECT_EQ(making.tables().skyView.data, whole.skyView.data);
+  EXPECT_EQ(making.tables().aerialInscatter.data, whole.aerialInscatter.data);
+  EXPECT_EQ(making.tables().aerialTransmittance.data, whole.aerialTransmittance.data);
 }
 
 TEST(SkyTables, NightHasAirglow) {
