@@ -117,6 +117,7 @@ field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
                            const std::vector<LayerCalibration>& calibration,
                            std::shared_ptr<const field::CloudNoise> noise, double secondsAfter) {
   std::vector<field::CloudLayer> layers;
+  layers.reserve(weather.layers.size());
   for (std::size_t i = 0; i < weather.layers.size(); ++i)
     layers.push_back(layerAt(scene, weather.layers[i], calibration[i], secondsAfter));
   return {std::move(noise), std::move(layers), scene.place.altitudeM};
