@@ -22,7 +22,7 @@ double edgeCosine(int i) {
 }  // namespace
 
 PhaseSampler PhaseSampler::henyeyGreenstein(double g) {
-  assert(std::abs(g) < 1.0);
+  assert(g > -1.0 && g < 1.0);
   PhaseSampler s;
   s.g_ = g;
   return s;
