@@ -8,9 +8,8 @@
 // No global state: several skies, several views a frame, several contexts may live side by side. What is
 // drawn depends on the scene, the seconds and the view alone, never on what was drawn before. The engine's
 // OpenGL state is as it was after every call. After the first two updates of a scene and a draw nothing is
-// compiled, no OpenGL object is made and no memory is allocated, and no update takes much longer than others
-// while time runs on. Belongs to the context that was current when it was
-// made; not thread-safe.
+// compiled, no OpenGL object is made and no memory is allocated, and while time runs on no update takes much
+// longer than others. Belongs to the context that was current when it was made; not thread-safe.
 #pragma once
 
 #include <memory>
