@@ -7,6 +7,7 @@
 struct Sheet {
   vec3 offset;        // of the pattern under the eye, tiles
   vec3 perM;          // tiles a metre along each axis; z = 0: the pattern is flat
+  float wrap;         // 1: the pattern lies on a half sphere about the ground under the eye; perM is that of its zenith
   float threshold;    // of the pattern in [0, 1]; cloud is where it is above
   float steepness;    // optical depth, seen square on, of a unit of pattern above the threshold
   float bias;         // the most that the sheet hides, [0, 1]
@@ -16,7 +17,12 @@ struct Sheet {
   vec3 tint;          // share of light that its cloud scatters
 };
 
-WELKIN_FN vec3 sheetCoordinate(Sheet sheet, vec3 p) { return sheet.offset + p * sheet.perM; }
+// p: in metres from the ground under the eye, z up.
+WELKIN_FN vec3 sheetCoordinate(Sheet sheet, vec3 p) {
+  // Stereographic, seen from the nadir, so that the pattern keeps its shapes: half as large on the horizon as in the zenith.
+  float up = p.z / max(length(p), 1e-3f);
+  return sheet.offset + p * sheet.perM * (1.0f + sheet.wrap * (1.0f - up) / (1.0f + up));
+}
 
 WELKIN_FN float sheetDepth(Sheet sheet, float pattern) { return sheet.steepness * max(pattern - sheet.threshold, 0.0f); }
 

@@ -42,8 +42,9 @@ SheetHit meetSheet(int i, int kind, bool far, vec3 dir, float endM, float pixelR
   side = level > 1e-4 ? side / level : normalize(vec3(dir.z, 0.0, -dir.x) + 1e-6);
   vec3 steep = cross(side, dir);
   float spanM = t * pixelRad;
-  hit.across = spanM * side * uSheets[i].perM;
-  hit.along = spanM * (steep - dir * (dot(normal, steep) / slant)) * uSheets[i].perM;
+  // Over such small ways a bent pattern is turned, but no larger or smaller.
+  hit.across = sheetCoordinate(uSheets[i], hit.p + spanM * side) - hit.coordinate;
+  hit.along = sheetCoordinate(uSheets[i], hit.p + spanM * (steep - dir * (dot(normal, steep) / slant))) - hit.coordinate;
   return hit;
 }
 

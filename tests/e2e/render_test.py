@@ -149,7 +149,7 @@ class LivingOctaves(ProgramTest):
     def test_what_cannot_live_is_said(self):
         self.write("s.toml", 'technique = "dome"\n[[sheet]]\nsurface = "dome"\ntexels = 64\npattern = "octaves"\n')
         message = self.fail_with(1, "living octaves", "render", "s.toml", "-o", "x.png")
-        self.assertIn("expected surface plane or skyplane", message)
+        self.assertIn("expected surface plane, skyplane or hemisphere", message)
 
 
 class Interruption(ProgramTest):

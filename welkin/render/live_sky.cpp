@@ -199,7 +199,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   std::size_t shadows = 0;
   float others = 1.0f;
   for (const ThinLayer& sheet : sheets) {
-    if (shadows == kMaxShadows || !sheet.flat.id()) {
+    if (shadows == kMaxShadows || scene::comesDown(sheet.sheet.surface)) {
       others *= sheet.sunThrough;
       continue;
     }

@@ -26,21 +26,22 @@ const SheetUniformNames kSheet = sheetUniformNames("uSheet");
 }  // namespace
 
 SheetUniformNames sheetUniformNames(const std::string& name) {
-  return {name + ".offset",     name + ".perM",         name + ".threshold",
-          name + ".steepness",  name + ".bias",         name + ".heightM",
-          name + ".thicknessM", name + ".typicalDepth", name + ".tint"};
+  return {name + ".offset",       name + ".perM", name + ".wrap",    name + ".threshold",
+          name + ".steepness",    name + ".bias", name + ".heightM", name + ".thicknessM",
+          name + ".typicalDepth", name + ".tint"};
 }
 
 void setSheet(gpu::Program& program, const SheetUniformNames& names, const shading::SheetLook& look) {
   program.set(names[0], look.offset);
   program.set(names[1], look.perM);
-  program.set(names[2], look.threshold);
-  program.set(names[3], look.steepness);
-  program.set(names[4], look.bias);
-  program.set(names[5], look.heightM);
-  program.set(names[6], look.thicknessM);
-  program.set(names[7], look.typicalDepth);
-  program.set(names[8], look.tint);
+  program.set(names[2], look.wrap);
+  program.set(names[3], look.threshold);
+  program.set(names[4], look.steepness);
+  program.set(names[5], look.bias);
+  program.set(names[6], look.heightM);
+  program.set(names[7], look.thicknessM);
+  program.set(names[8], look.typicalDepth);
+  program.set(names[9], look.tint);
 }
 
 SheetPass::SheetPass() {

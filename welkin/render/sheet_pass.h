@@ -41,7 +41,7 @@ class SheetPass {
 };
 
 // Sets `name`.offset and the other members of lib/sheet.glsl's struct. `names` as sheetUniformNames gives.
-using SheetUniformNames = std::array<std::string, 9>;
+using SheetUniformNames = std::array<std::string, 10>;
 SheetUniformNames sheetUniformNames(const std::string& name);
 void setSheet(gpu::Program& program, const SheetUniformNames& names, const shading::SheetLook& look);
 

@@ -39,7 +39,7 @@ ThinLayer makeThinLayer(const scene::Sheet& sheet, std::uint64_t seed, double ea
     layer.described = shading::matterOf(sheet, pattern.values(), seed);
   }
   layer.matter = layer.described;
-  if (sheet.surface == scene::SheetSurface::kDome) {
+  if (scene::hasVolume(sheet.surface)) {
     layer.sheet.texels = pattern.volume.nx;
     layer.volume = gpu::Texture3D(slopes ? shading::withSlopes(pattern.volume) : pattern.volume, options);
     layer.volume.makeMipmaps();

@@ -22,7 +22,7 @@ constexpr double kMaxDomeTexels = 256;
 constexpr double kVisibleDepth = 0.3;
 
 noise::NoiseParams noiseOf(const Sheet& sheet, std::uint64_t seed) {
-  const bool volume = sheet.surface == SheetSurface::kDome;
+  const bool volume = hasVolume(sheet.surface);
   noise::NoiseParams p;
   p.dimensions = volume ? 3 : 2;
   p.frequency = glm::dvec3(static_cast<double>(sheet.frequency));
@@ -42,12 +42,13 @@ void describe(Sheet& s, ParamVisitor& v) {
           s.preset);
   v.choice({"surface", "",
             "plane: a flat square about the eye; skyplane: bent over the earth, to the horizon; dome: cuts "
-            "through a volume of noise"},
+            "through a volume of noise; hemisphere: half a sphere, as high as wide, which the pattern is "
+            "wrapped over from the zenith"},
            s.surface);
   v.choice({"tier", "",
             "how it is lit: flat, embossed by the pattern's slope, or lit by its depth towards the sun"},
            s.tier);
-  v.value({"height_m", "m", "height above the ground", 10, 25000}, s.heightM);
+  v.value({"height_m", "m", "height above the ground; a hemisphere's radius", 10, 25000}, s.heightM);
   v.value({"thickness_m", "m", "depth over which its optical depth is spread", 1, 10000}, s.thicknessM);
   v.value({"texture", "",
            "file of the pattern, beside the scene file: a picture, for a dome a volume; absent: it is "
@@ -82,7 +83,7 @@ void describe(Sheet& s, ParamVisitor& v) {
           s.riseMps);
   v.choice(
       {"pattern", "",
-       "noise: the same at all times; octaves: living ones, which change; on planes alone, at most 8 of them "
+       "noise: the same at all times; octaves: living ones, which change; not on a dome, at most 8 of them "
        "with 1024 texels and a frequency of 32"},
       s.pattern);
   describe(s.living, v);
@@ -95,8 +96,8 @@ void validateLiving(const Sheet& s) {
   const auto require = [](bool good, const std::string& problem) {
     if (!good) throw ParameterError("living octaves: " + problem);
   };
-  require(s.surface != SheetSurface::kDome,
-          "a dome needs a volume of noise; expected surface plane or skyplane, or pattern noise");
+  require(!hasVolume(s.surface),
+          "a dome needs a volume of noise; expected surface plane, skyplane or hemisphere, or pattern noise");
   require(s.texels <= kMaxLivingTexels,
           "texels is " + std::to_string(s.texels) + "; expected at most " + std::to_string(kMaxLivingTexels));
   require(s.octaves <= kMaxLivingOctaves, "octaves is " + std::to_string(s.octaves) + "; expected at most " +
@@ -111,7 +112,7 @@ void validateLiving(const Sheet& s) {
 void validate(const Sheet& s) {
   if (s.density && s.exponent)
     throw ParameterError("density and exponent both say how fast a sheet thickens; expected one of them");
-  if (s.surface == SheetSurface::kDome && s.texels > kMaxDomeTexels)
+  if (hasVolume(s.surface) && s.texels > kMaxDomeTexels)
     throw ParameterError("a dome's pattern of " + std::to_string(s.texels) +
                          " texels a side is too large; expected at most " +
                          std::to_string(static_cast<int>(kMaxDomeTexels)));
@@ -167,7 +168,7 @@ Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
   s.texels = 1024;
   s.octaves = 6;
   s.amplitude = 0.5;  // never clamped
-  if (surface == SheetSurface::kDome) {
+  if (hasVolume(surface)) {
     // A quarter of that, as a volume of noise has few texels a side.
     s.tileM *= 0.25;
     s.texels = 128;

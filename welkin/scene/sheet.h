@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thin layers of cloud: a pattern of noise on a surface above the eye, for skies that must be drawn in no
 // time. The surfaces are those of G. Tarantilis 2004, "Simulating Clouds with Procedural Texturing Techniques
-// Using the GPU" (plane, dome) and K. Pallister, "Generating Procedural Clouds Using 3D Hardware" (sky
-// plane).
+// Using the GPU" (plane, dome), K. Pallister, "Generating Procedural Clouds Using 3D Hardware" (sky plane)
+// and of the course project "Realistic Real-Time Skies" (hemisphere).
 #pragma once
 
 #include <array>
@@ -23,10 +23,19 @@
 namespace welkin::scene {
 
 enum class SheetSurface {
-  kPlane,     // a flat square that follows the eye and fades out at its rim
-  kSkyPlane,  // the same bent down over the earth: reaches the horizon
-  kDome,      // a dome about the eye that cuts through a volume of noise
+  kPlane,       // a flat square that follows the eye and fades out at its rim
+  kSkyPlane,    // the same bent down over the earth: reaches the horizon
+  kDome,        // a dome about the eye that cuts through a volume of noise
+  kHemisphere,  // half a sphere about the eye that a flat pattern is wrapped over, from the zenith down
 };
+// Whether its pattern is a volume.
+constexpr bool hasVolume(SheetSurface surface) {
+  return surface == SheetSurface::kDome;
+}
+// Whether it ends on the ground, so that no one height is its own; its shadows are a mean.
+constexpr bool comesDown(SheetSurface surface) {
+  return surface == SheetSurface::kDome || surface == SheetSurface::kHemisphere;
+}
 
 // How a sheet is lit, the cheapest first.
 enum class SheetTier {
@@ -117,7 +126,7 @@ double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfte
 namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::SheetSurface> =
-    std::array<std::string_view, 3>{"plane", "skyplane", "dome"};
+    std::array<std::string_view, 4>{"plane", "skyplane", "dome", "hemisphere"};
 template <>
 inline constexpr auto kEnumNames<scene::SheetPreset> =
     std::array<std::string_view, 4>{"thesis-overcast", "thesis-broken", "thesis-few", "thesis-dome"};

@@ -39,7 +39,7 @@ std::vector<float> patternIn(const io::Texels& texels) {
 
 // Throws IoError or ParameterError.
 PatternTexels fromFile(const Sheet& sheet) {
-  const bool dome = sheet.surface == SheetSurface::kDome;
+  const bool dome = hasVolume(sheet.surface);
   const io::Texels texels = io::readTexels(*sheet.texture);
   const io::TexelShape& shape = texels.shape;
   if (shape.volume != dome)
@@ -73,7 +73,7 @@ PatternTexels patternOf(const Sheet& sheet, std::uint64_t seed) {
     }
   }
   PatternTexels pattern;
-  if (sheet.surface == SheetSurface::kDome)
+  if (hasVolume(sheet.surface))
     pattern.volume = domePattern(sheet, seed);
   else
     pattern.flat = flatPattern(sheet, seed);

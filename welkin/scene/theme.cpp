@@ -30,24 +30,28 @@ Theme thesisDome() {
   return theme;
 }
 
-// Cover and sharpness in the place of cutoff and density: cutoff = 1 - cover, density = 1 - sharpness. The
-// paper has no numbers: chosen by eye, thinner and finer with height.
+// The paper's half spheres, one in the other, with its four octaves. Cover and sharpness in the place of
+// cutoff and density: cutoff = 1 - cover, density = 1 - sharpness. It has no numbers for them: chosen by eye,
+// thinner with height.
 Theme realisticSkies() {
   Theme theme;
   theme.technique = Technique::kDome;
   struct Layer {
     double heightM, cover, sharpness, bias, speedMps;
   };
-  for (const Layer& layer : {Layer{1500.0, 0.33, 0.045, 1.0, 9.0}, Layer{4000.0, 0.34, 0.02, 0.8, 14.0},
+  for (const Layer& layer : {Layer{1500.0, 0.34, 0.04, 1.0, 9.0}, Layer{4000.0, 0.34, 0.02, 0.8, 14.0},
                              Layer{8500.0, 0.42, 0.006, 0.5, 24.0}}) {
-    Sheet s = sheetOf(SheetPreset::kThesisDome);
+    Sheet s;
+    s.surface = SheetSurface::kHemisphere;
+    s.pattern = SheetPattern::kOctaves;
+    s.living.kernel = OctaveKernel::kCourse;
+    s.octaves = 4;
     s.heightM = layer.heightM;
-    s.tileM = 9.0 * layer.heightM;
+    s.tileM = 4.0 * layer.heightM;
     s.cutoff = 1.0 - layer.cover;
     s.density = 1.0 - layer.sharpness;
     s.bias = layer.bias;
     s.windSpeedMps = layer.speedMps;
-    s.frequency = 4;
     theme.sheets.push_back(s);
   }
   return theme;

@@ -52,13 +52,14 @@ SheetMatter matterAt(const scene::Sheet& sheet, const SheetMatter& described, do
 
 SheetLook lookOf(const scene::Sheet& sheet, const SheetMatter& matter, double secondsAfter,
                  const glm::dvec3& eyeM, const glm::vec3& toLight, float pixelRad) {
-  const bool volume = sheet.surface == scene::SheetSurface::kDome;
+  const bool volume = scene::hasVolume(sheet.surface);
   const glm::dvec2 moved = scene::windPathM(sheet, secondsAfter);
   const glm::dvec3 shift(eyeM.x - moved.x, eyeM.y - moved.y, volume ? -sheet.riseMps * secondsAfter : 0.0);
   SheetLook look;
   look.offset = glm::vec3(
       glm::fract(matter.origin + sheet.offset + shift / sheet.tileM));  // whole tiles make no difference
   look.perM = glm::vec3(1.0f, 1.0f, volume ? 1.0f : 0.0f) / static_cast<float>(sheet.tileM);
+  look.wrap = sheet.surface == scene::SheetSurface::kHemisphere ? 1.0f : 0.0f;
   look.threshold = static_cast<float>(matter.law.threshold);
   look.steepness = static_cast<float>(std::min(matter.law.k, 1e4));
   look.bias = static_cast<float>(matter.law.bias);

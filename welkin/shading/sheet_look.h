@@ -15,7 +15,7 @@ namespace welkin::shading {
 struct SheetLook {
   // The members of `struct Sheet` in lib/sheet.glsl, with the same meanings.
   glm::vec3 offset{0.0f}, perM{0.0f};
-  float threshold = 0.0f, steepness = 1.0f, bias = 1.0f, heightM = 0.0f, thicknessM = 1.0f,
+  float wrap = 0.0f, threshold = 0.0f, steepness = 1.0f, bias = 1.0f, heightM = 0.0f, thicknessM = 1.0f,
         typicalDepth = 1.0f;
   glm::vec3 tint{1.0f};
   glm::vec3 sunStep{0.0f};      // uSunStep of pass/sheet.frag

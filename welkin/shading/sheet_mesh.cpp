@@ -113,12 +113,25 @@ SheetMesh domeMesh(double heightM, double radiusM, int segments) {
   return ringsMesh(rings, segments);
 }
 
+SheetMesh hemisphereMesh(double radiusM) {
+  constexpr int kRings = 9;
+  std::vector<Ring> rings;
+  for (int r = 0; r <= kRings; ++r) {
+    const double zenith = 0.5 * kPi * r / kRings;
+    rings.push_back({radiusM * std::sin(zenith), r == kRings ? 0.0 : radiusM * std::cos(zenith),
+                     r == kRings ? 0.0f : 1.0f});
+  }
+  return ringsMesh(rings, 4 * kRings);
+}
+
 SheetMesh meshOf(const scene::Sheet& sheet, double earthRadiusM) {
   switch (sheet.surface) {
     case scene::SheetSurface::kPlane:
       return planeMesh(sheet.heightM);
     case scene::SheetSurface::kSkyPlane:
       return skyPlaneMesh(sheet.heightM, earthRadiusM);
+    case scene::SheetSurface::kHemisphere:
+      return hemisphereMesh(sheet.heightM);
     case scene::SheetSurface::kDome:
       break;
   }
@@ -147,6 +160,8 @@ SheetShape shapeOf(const scene::Sheet& sheet, double earthRadiusM, double eyeM) 
       return {{1.0f, static_cast<float>(earthRadiusM), height, static_cast<float>(outer)},
               static_cast<float>(inner)};
     }
+    case scene::SheetSurface::kHemisphere:
+      return {{1.0f, 0.0f, height, kFar}, kFar};
     case scene::SheetSurface::kDome:
       break;
   }

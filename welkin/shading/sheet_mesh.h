@@ -30,10 +30,12 @@ SheetMesh planeMesh(double heightM);
 SheetMesh skyPlaneMesh(double heightM, double earthRadiusM);
 
 // Tarantilis's dome: rings from the zenith to the horizon, denser there, alpha 1, then .7, .3, 0 on the last
-// four. `radiusM` wide, flattened so that its zenith is at heightM. It stands for the dome of "Realistic
-// Real-Time Skies" as well, a half sphere with a vertex every ten degrees: the pattern is looked up by place,
-// so that where the vertices lie makes no difference to be seen.
+// four. `radiusM` wide, flattened so that its zenith is at heightM.
 SheetMesh domeMesh(double heightM, double radiusM, int segments = 20);
+
+// The dome of "Realistic Real-Time Skies": a half sphere with a vertex every ten degrees. Alpha falls to 0
+// over the lowest ring.
+SheetMesh hemisphereMesh(double radiusM);
 
 SheetMesh meshOf(const scene::Sheet& sheet, double earthRadiusM);
 

@@ -16,7 +16,7 @@ std::string patternName(std::size_t sheet) {
 
 // What WELKIN_EACH_SHEET says of a sheet.
 std::string callOf(std::span<const SheetOnRay> sheets, std::size_t i) {
-  const bool volume = sheets[i].surface == scene::SheetSurface::kDome;
+  const bool volume = scene::hasVolume(sheets[i].surface);
   return "(" + std::to_string(i) + ", " + std::to_string(static_cast<int>(sheets[i].surface)) + ", " +
          std::to_string(static_cast<int>(sheets[i].tier)) +
          (volume ? ", vec3, sampler3D, " : ", vec2, sampler2D, ") + patternName(i) + ") ";
@@ -55,7 +55,7 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
   for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) layers += layerCalls(layout, b);
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     each += "CALL" + callOf(sheets, i);
-    shadows += sheets[i].surface == scene::SheetSurface::kDome
+    shadows += scene::comesDown(sheets[i].surface)
                    ? "MEAN(" + std::to_string(i) + ") "
                    : "FLAT(" + std::to_string(i) + ", " + patternName(i) + ") ";
   }

@@ -5,8 +5,8 @@
 // Bands of volumes are cut where a sheet goes through them. The order is by height overhead. That is exact
 // for sky planes, which keep their height over the earth, as bands do. A plane stays level while the earth
 // falls away, 20 heights out by 200 times the square of its height over the earth's radius (63 m at 1,400 m,
-// 2 km at 8,000 m), and a dome comes down to the ground: where that takes them through volumes they are drawn
-// in the order that they have overhead.
+// 2 km at 8,000 m), and a dome or a hemisphere comes down to the ground: where that takes them through
+// volumes they are drawn in the order that they have overhead.
 #pragma once
 
 #include <glm/vec4.hpp>

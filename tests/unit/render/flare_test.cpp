@@ -132,8 +132,8 @@ TEST_F(FlareTest, CloudsBeforeTheSunTakeTheirShare) {
   scene::Scene s = beside(15.0, 5.0);
   const double clear = light(added(s));
   ASSERT_GT(clear, 0.0);
-  for (const auto surface :
-       {scene::SheetSurface::kPlane, scene::SheetSurface::kSkyPlane, scene::SheetSurface::kDome}) {
+  for (const auto surface : {scene::SheetSurface::kPlane, scene::SheetSurface::kSkyPlane,
+                             scene::SheetSurface::kDome, scene::SheetSurface::kHemisphere}) {
     s.sheets = {overcast(surface, 1.0)};
     EXPECT_LT(light(added(s)), 1e-3 * clear);
     s.sheets = {overcast(surface, 0.5)};

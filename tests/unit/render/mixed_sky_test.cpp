@@ -154,7 +154,8 @@ TEST_F(MixedSkyTest, ASheetAloneIsThatOfTheFrameLoop) {
   for (const double sunElevationDeg : {35.0, 2.0}) {
     scene::Scene s = looking(sized(clearScene(sunElevationDeg), 96, 54), 200.0, 30.0);
     s.technique = scene::Technique::kSkyPlane;
-    for (const auto surface : {SheetSurface::kPlane, SheetSurface::kSkyPlane, SheetSurface::kDome})
+    for (const auto surface :
+         {SheetSurface::kPlane, SheetSurface::kSkyPlane, SheetSurface::kDome, SheetSurface::kHemisphere})
       for (const auto tier : {SheetTier::kFlat, SheetTier::kEmbossed, SheetTier::kLit}) {
         s.sheets = {islands(2000.0, surface)};
         s.sheets[0].tier = tier;

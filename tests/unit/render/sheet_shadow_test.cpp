@@ -60,8 +60,9 @@ TEST_F(SheetShadowTest, AnEvenSheetDimsDirectLightByWhatItHides) {
   sheet.cutoff = 0.0;
   sheet.density = 0.01;
   sheet.bias = 0.5;
-  for (const auto surface : {scene::SheetSurface::kSkyPlane, scene::SheetSurface::kDome}) {
-    sheet.surface = surface;  // that of a dome is the mean
+  for (const auto surface :
+       {scene::SheetSurface::kSkyPlane, scene::SheetSurface::kDome, scene::SheetSurface::kHemisphere}) {
+    sheet.surface = surface;  // that of what comes down to the ground is the mean
     s.sheets = {sheet};
     const double after = luminanceOf(meanOf(drawn(s)));
     const double expected = luminanceOf(skyLux() + 0.5f * directLux());

@@ -210,8 +210,8 @@ TEST(ShaderLibrary, MarchesWithSheetsCompileInEveryDialect) {
   LightVolumeLayout layout;
   layout.bands = {{1000.0f, 2000.0f, 0, 4, {0}}, {6000.0f, 7000.0f, 5, 9, {1}}};
   std::vector<SheetOnRay> sheets;
-  for (const auto surface :
-       {scene::SheetSurface::kPlane, scene::SheetSurface::kSkyPlane, scene::SheetSurface::kDome})
+  for (const auto surface : {scene::SheetSurface::kPlane, scene::SheetSurface::kSkyPlane,
+                             scene::SheetSurface::kDome, scene::SheetSurface::kHemisphere})
     for (const auto tier : {scene::SheetTier::kFlat, scene::SheetTier::kEmbossed, scene::SheetTier::kLit}) {
       sheets.push_back({.surface = surface, .tier = tier});
       sheets.back().look.heightM = 900.0f * static_cast<float>(sheets.size());

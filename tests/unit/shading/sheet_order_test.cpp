@@ -30,7 +30,8 @@ scene::Sheet sheetOn(SheetSurface surface, double heightM = 1400.0) {
   return sheet;
 }
 
-constexpr SheetSurface kSurfaces[] = {SheetSurface::kPlane, SheetSurface::kSkyPlane, SheetSurface::kDome};
+constexpr SheetSurface kSurfaces[] = {SheetSurface::kPlane, SheetSurface::kSkyPlane, SheetSurface::kDome,
+                                      SheetSurface::kHemisphere};
 
 // From the eye to every vertex the surface is met where the mesh is, as much of it as the mesh has there.
 TEST(SheetSurface, IsThatOfTheMesh) {
@@ -62,6 +63,12 @@ TEST(SheetSurface, HasNothingAtItsRim) {
     if (surface == SheetSurface::kDome) {
       EXPECT_EQ(sheetRim(kind, s.shape, s.innerM, {14000.0f, 0.0f, 0.0f}), 0.0f);
       EXPECT_EQ(sheetRim(kind, s.shape, s.innerM, {0.0f, 13990.0f, -50.0f}), 0.0f);
+      continue;
+    }
+    if (surface == SheetSurface::kHemisphere) {
+      EXPECT_EQ(sheetRim(kind, s.shape, s.innerM, {1400.0f, 0.0f, 0.0f}), 0.0f);
+      EXPECT_EQ(sheetRim(kind, s.shape, s.innerM, {0.0f, 1399.0f, -50.0f}), 0.0f);
+      EXPECT_EQ(sheetRim(kind, s.shape, s.innerM, {1378.0f, 0.0f, 244.0f}), 1.0f);
       continue;
     }
     const float end = s.shape.w;

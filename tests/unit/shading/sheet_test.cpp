@@ -9,12 +9,16 @@
 #include <map>
 #include <utility>
 
+#include "welkin/core/glsl.h"
 #include "welkin/core/units.h"
 #include "welkin/shading/sheet_look.h"
 #include "welkin/shading/sheet_mesh.h"
 
 namespace welkin::shading {
 namespace {
+
+using namespace welkin::glsl;
+#include "shaders/lib/sheet.glsl"
 
 struct Vertex {
   glm::dvec3 p;
@@ -28,7 +32,8 @@ std::size_t vertexCount(const SheetMesh& mesh) {
   return mesh.vertices.size() / SheetMesh::kFloats;
 }
 
-const SheetMesh kMeshes[] = {planeMesh(1200.0), skyPlaneMesh(1200.0, kEarthRadiusM), domeMesh(550.0, 5500.0)};
+const SheetMesh kMeshes[] = {planeMesh(1200.0), skyPlaneMesh(1200.0, kEarthRadiusM), domeMesh(550.0, 5500.0),
+                             hemisphereMesh(2000.0)};
 
 // Edges that one triangle alone has are the mesh's rim; there is no other hole, above all none at a meridian.
 TEST(SheetMesh, EndsWithAlphaNoughtAndNowhereElse) {
@@ -69,6 +74,53 @@ TEST(SheetMesh, TrianglesTurnCounterClockwiseFromBelow) {
       const glm::dvec3 a = vertexOf(mesh, mesh.indices[t]).p, b = vertexOf(mesh, mesh.indices[t + 1]).p,
                        c = vertexOf(mesh, mesh.indices[t + 2]).p;
       EXPECT_LT(glm::cross(b - a, c - a).z, 0.0) << t;  // from above: clockwise
+    }
+}
+
+TEST(SheetMesh, HemisphereHasAVertexEveryTenDegrees) {
+  const SheetMesh mesh = hemisphereMesh(2000.0);
+  ASSERT_EQ(vertexCount(mesh), 10u * 36u);
+  for (std::size_t i = 0; i < vertexCount(mesh); ++i) {
+    const glm::dvec3 p = vertexOf(mesh, i).p;
+    EXPECT_NEAR(glm::length(p), 2000.0, 1e-2);
+    const double zenith = degrees(std::acos(p.z / 2000.0)), azimuth = degrees(std::atan2(p.y, p.x));
+    EXPECT_NEAR(zenith, 10.0 * static_cast<double>(i / 36), 1e-2);
+    if (i >= 36) {
+      EXPECT_NEAR(std::remainder(azimuth, 10.0), 0.0, 1e-3);
+    }
+  }
+}
+
+// A pattern keeps its shapes on half a sphere: steps on it, down and around, are of one length in the pattern
+// and square to each other. They grow from that of the zenith to twice it on the horizon.
+TEST(SheetLook, WrapsAHemisphereWithoutShear) {
+  scene::Sheet sheet;
+  sheet.surface = scene::SheetSurface::kHemisphere;
+  sheet.heightM = 2000.0;
+  sheet.tileM = 500.0;
+  const SheetMatter matter = matterOf(sheet, std::vector<float>(4, 0.5f), 3);
+  const SheetLook look = lookOf(sheet, matter, 0.0, glm::dvec3(0.0), {0, 0, 1}, 1.0f);
+  Sheet as{};
+  as.offset = look.offset;
+  as.perM = look.perM;
+  as.wrap = look.wrap;
+  const auto at = [&](double zenith, double azimuth) {
+    return glm::dvec3(sheetCoordinate(as, glm::vec3(2000.0 * std::sin(zenith) * std::cos(azimuth),
+                                                    2000.0 * std::sin(zenith) * std::sin(azimuth),
+                                                    2000.0 * std::cos(zenith))) -
+                      look.offset);
+  };
+  EXPECT_EQ(at(0.0, 0.0), glm::dvec3(0.0));
+  constexpr double kStep = 0.02;
+  for (const double zenith : {0.05, 0.3, 1.0, 0.5 * kPi})
+    for (const double azimuth : {0.0, 1.0, 4.0}) {
+      const glm::dvec3 down = at(zenith + kStep, azimuth) - at(zenith - kStep, azimuth);
+      const glm::dvec3 around = at(zenith, azimuth + kStep) - at(zenith, azimuth - kStep);
+      const double expected = 2.0 / (1.0 + std::cos(zenith)) * 4.0 * 2.0 * kStep;  // four tiles a radius
+      EXPECT_NEAR(glm::length(down), expected, 1e-3 * expected);
+      EXPECT_NEAR(glm::length(around), std::sin(zenith) * expected, 1e-3 * expected);
+      EXPECT_NEAR(glm::dot(down, around), 0.0, 1e-3 * expected * expected);
+      EXPECT_EQ(down.z, 0.0);
     }
 }
 
