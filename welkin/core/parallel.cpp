@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -21,13 +23,23 @@ struct Loop {
   std::size_t count, grain, chunks;
   std::atomic<std::size_t> nextChunk{0};
 
-  // Guarded by the crew's mutex:
-  std::size_t helpers = 0, mostHelpers;
+  // Written under the crew's mutex:
+  std::atomic<std::size_t> helpers = 0;
+  std::size_t mostHelpers;
   std::exception_ptr failure{};
   Loop* next = nullptr;  // that waits for helpers
 
   bool wantsHelp() const { return helpers < mostHelpers && nextChunk.load() < chunks; }
 };
+
+// Until good() or for as long as it takes to wake a thread that sleeps: where loops follow each other, nobody
+// sleeps between them.
+template <class Good>
+void waitAwake(const Good& good) {
+  using std::chrono::steady_clock;
+  const auto end = steady_clock::now() + std::chrono::microseconds(50);
+  while (!good() && steady_clock::now() < end) std::this_thread::yield();
+}
 
 // Threads that wait for loops and help with them, kept from loop to loop: to make a thread takes as long as
 // many a loop does. Nothing is allocated once they are there.
@@ -48,12 +60,14 @@ class Crew {
       while (threads_.size() < loop.mostHelpers) threads_.emplace_back([this] { helpForEver(); });
       loop.next = loops_;
       loops_ = &loop;
+      ++begun_;
     }
     if (loop.mostHelpers == 1)
       work_.notify_one();
     else
       work_.notify_all();
     workOn(loop);
+    waitAwake([&] { return loop.helpers == 0; });
     std::unique_lock lock(mutex_);
     Loop** place = &loops_;
     while (*place != &loop) place = &(*place)->next;
@@ -76,6 +90,10 @@ class Crew {
       workOn(*loop);
       lock.lock();
       if (--loop->helpers == 0) done_.notify_all();
+      const std::uint64_t begun = begun_;
+      lock.unlock();
+      waitAwake([&] { return begun != begun_; });
+      lock.lock();
     }
   }
 
@@ -95,6 +113,7 @@ class Crew {
   std::mutex mutex_;
   std::condition_variable work_, done_;
   Loop* loops_ = nullptr;
+  std::atomic<std::uint64_t> begun_ = 0;  // loops so far
   std::vector<std::thread> threads_;
   bool ending_ = false;
 };
