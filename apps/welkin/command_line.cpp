@@ -223,6 +223,19 @@ void describeConvert(CLI::App* app, ConvertArgs& a) {
   addTexelFile(app, a.file, "what loses nothing", "clamp");
 }
 
+void describeCompare(CLI::App* app, CompareArgs& a) {
+  app->add_option("picture", a.picture, "two .png, or two of .exr and .hdr, of one size")
+      ->type_name("PICTURE");
+  app->add_option("truth", a.truth, wrapped("the same: what the first is measured by"))->type_name("TRUTH");
+  add(app, "--bias", a.biasMap, "FILE.png",
+      "map of relative errors of luminance: blue where PICTURE is too dark, red where it is too bright");
+  add(app, "--range", a.range, "X", "relative error at which --bias has its full colours (default 0.5)");
+  add(app, "--flip", a.flipMap, "FILE.png", "map of FLIP, from black for 0 to pale yellow for 1");
+  add(app, "--exposure", a.exposure, "auto|EV",
+      "at which FLIP sees pictures of luminance (default auto: TRUTH's own)");
+  app->add_flag("--json", a.json, "as JSON");
+}
+
 // Names that one may have meant: "--flag" of this command, or commands.
 std::vector<std::string> flagNames(const CLI::App* app) {
   std::vector<std::string> names;
@@ -308,6 +321,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
       "convert", "Write a picture or volume as another kind of file; nothing is lost unasked");
   describeConvert(convertApp, convert);
 
+  CompareArgs compare;
+  CLI::App* compareApp =
+      root.add_subcommand("compare", "Say how far a picture is from another, in numbers and as maps");
+  describeCompare(compareApp, compare);
+
   BenchArgs bench;
   CLI::App* benchApp = root.add_subcommand("bench", "Measure how fast Welkin is on this machine");
   benchApp->add_option("name", bench.names, "noise, frame, splat; all of them without a name")
@@ -352,6 +370,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
   if (chosen[0] == cloudApp) return cloud;
   if (chosen[0] == fitApp) return fit;
   if (chosen[0] == convertApp) return convert;
+  if (chosen[0] == compareApp) return compare;
   if (chosen[0] == benchApp) return bench;
   if (!topic) return PrintText{root.help("", CLI::AppFormatMode::Normal)};
   if (*topic == "scene") return helpScene;

@@ -75,6 +75,12 @@ struct ConvertArgs {
   TexelFileFlags file;
 };
 
+struct CompareArgs {
+  std::string picture, truth;
+  Flag biasMap, flipMap, range, exposure;
+  bool json = false;
+};
+
 struct BenchArgs {
   std::vector<std::string> names;
   bool json = false;
@@ -90,7 +96,7 @@ struct PrintText {
 };
 
 using Command = std::variant<RenderArgs, MetarArgs, SunArgs, InfoArgs, NoiseArgs, CloudArgs, FitArgs,
-                             ConvertArgs, BenchArgs, HelpSceneArgs, PrintText>;
+                             ConvertArgs, CompareArgs, BenchArgs, HelpSceneArgs, PrintText>;
 
 // Throws UsageError, which names the nearest command or flag for one that does not exist.
 Command parseCommandLine(int argc, const char* const* argv);

@@ -11,6 +11,7 @@
 #include "bench_command.h"
 #include "cloud_command.h"
 #include "command_line.h"
+#include "compare_command.h"
 #include "convert_command.h"
 #include "fit_command.h"
 #include "help_command.h"
@@ -43,6 +44,9 @@ int run(const FitArgs& args) {
 }
 int run(const ConvertArgs& args) {
   return runConvert(args);
+}
+int run(const CompareArgs& args) {
+  return runCompare(args);
 }
 int run(const BenchArgs& args) {
   return runBench(args);
