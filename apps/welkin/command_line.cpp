@@ -101,15 +101,25 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       ->group("Picture");
   add(app, "--bits", a.bits, "8|16", "bits a channel of PNG (default 8)")->group("Picture");
   add(app, "--renderer", a.renderer, "gpu|reference",
-      "gpu: OpenGL, on the processor where there is no GPU (default); reference: path tracing, of slabs only "
-      "in "
-      "this version")
+      "gpu: OpenGL, on the processor where there is no GPU (default); reference: path tracing, "
+      "without bias, on the processor")
       ->group("Picture");
   add(app, "--spp", a.spp, "N",
-      "paths of the reference renderer, for each column of a slab (default: until --noise)")
+      "paths of the reference renderer, for each pixel, or column of a slab (default: until --noise)")
       ->group("Picture");
   add(app, "--noise", a.noise, "X",
-      "relative standard error at which the reference renderer stops (default 0.001 without --spp)")
+      "relative standard error at which the reference renderer stops, of a picture the mean over it (default "
+      "without --spp 0.02, of a slab 0.001)")
+      ->group("Picture");
+  add(app, "--resume", a.resume, "FILE.exr",
+      "what the reference renderer has done so far: it goes on from there if the file exists, and keeps it "
+      "up "
+      "to date")
+      ->group("Running");
+  add(app, "--droplets", a.droplets, "fit|mie",
+      "how droplets scatter for the reference renderer: as for gpu (default), or by Mie's theory, with "
+      "fogbow "
+      "and glory")
       ->group("Picture");
   add(app, "--frames", a.frames, "N", one("output.frames"))->group("Sequences");
   add(app, "--fps", a.fps, "F", one("output.fps"))->group("Sequences");

@@ -8,6 +8,7 @@
 #include "interrupt.h"
 #include "picture_writer.h"
 #include "progress_line.h"
+#include "reference_command.h"
 #include "render_settings.h"
 #include "report.h"
 #include "slab_command.h"
@@ -117,6 +118,7 @@ int runRender(const RenderArgs& args) {
   catchInterrupts();  // from here on there may be unfinished files
   if (!settings.report.empty()) checkWritable(settings.report);
   if (!settings.scene.slab.empty()) return runSlab(settings);
+  if (settings.reference) return runReference(settings);
   const RenderReport report = Sequence(settings).draw();
   if (!settings.report.empty()) io::writeTextFile(settings.report, reportJson(settings, report));
   return 0;

@@ -75,12 +75,18 @@ void setRenderer(RenderSettings& r, const RenderArgs& a) {
     throw UsageError("--renderer is \"" + name + "\"; expected gpu or reference");
   r.reference = name == "reference";
   for (const auto& [flag, given] :
-       {std::pair("--spp", a.spp.has_value()), std::pair("--noise", a.noise.has_value())})
+       {std::pair("--spp", a.spp.has_value()), std::pair("--noise", a.noise.has_value()),
+        std::pair("--resume", a.resume.has_value()), std::pair("--droplets", a.droplets.has_value())})
     if (given && !r.reference)
       throw UsageError(std::string(flag) +
                        " belongs to the reference renderer; expected --renderer reference");
   if (a.spp) r.spp = wholeNumber("--spp", *a.spp, 1, 2000000000);
   if (a.noise) r.noise = positiveShare("--noise", *a.noise);
+  if (a.resume) r.resume = *a.resume;
+  if (!a.droplets) return;
+  if (*a.droplets != "fit" && *a.droplets != "mie")
+    throw UsageError("--droplets is \"" + *a.droplets + "\"; expected fit or mie");
+  r.droplets = *a.droplets == "mie" ? reference::DropletModel::kMie : reference::DropletModel::kFit;
 }
 
 // A slab is traced and reported; a sky is drawn.
@@ -89,10 +95,11 @@ void checkSlab(const RenderSettings& r, const RenderArgs& a) {
   if (slab && !r.reference)
     throw UsageError(
         "the scene has a [slab], which only the reference renderer traces; expected --renderer reference");
-  if (!slab && r.reference)
-    throw UsageError(
-        "--renderer: the reference renderer traces only slabs in this version; expected gpu, or a scene with "
-        "[slab]");
+  if (!slab && r.reference && (r.video || r.numbered || r.scene.output.frames > 1))
+    throw UsageError("the reference renderer draws one picture; expected a name such as sky.exr and 1 frame");
+  if (slab && (a.resume || a.droplets))
+    throw UsageError("--resume and --droplets are for pictures; expected a scene without [slab]");
+  if (!slab && !a.out) throw UsageError("render: expected -o OUT, the file to write");
   if (slab && a.out) throw UsageError("-o: a slab has no picture; expected --report FILE.json");
   if (slab && r.report.empty())
     throw UsageError("a slab's result is its report; expected --report FILE.json");
@@ -141,7 +148,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   setRenderer(r, a);
   if (a.out)
     setOutput(r, *a.out);
-  else if (!r.reference)
+  else if (!a.scene || !r.reference)
     throw UsageError("render: expected -o OUT, the file to write");
   if (a.bits) {
     r.pngBits = wholeNumber("--bits", *a.bits, 8, 16);

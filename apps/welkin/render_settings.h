@@ -8,6 +8,7 @@
 
 #include "command_line.h"
 #include "welkin/io/write_image.h"
+#include "welkin/reference/sky_tracer.h"
 #include "welkin/scene/scene.h"
 
 namespace welkin::app {
@@ -23,7 +24,9 @@ struct RenderSettings {
   bool reference = false;                          // the reference renderer, not the GPU's
   std::optional<int> spp;                          // of the reference renderer: paths at most
   std::optional<double> noise;                     // and the relative standard error to stop at
-  int threads = 0;                                 // 0: all
+  std::string resume;                              // and its unfinished work; empty: none
+  reference::DropletModel droplets = reference::DropletModel::kFit;
+  int threads = 0;  // 0: all
 };
 
 // A whole number from `low` to `high`, and the one that --threads takes. Throw UsageError.

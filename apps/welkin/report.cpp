@@ -73,7 +73,7 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   Json j;
   j["welkin"] = WELKIN_VERSION;
   j["output"] = settings.out;
-  j["renderer"] = "gpu";
+  j["renderer"] = r.traced ? "reference" : "gpu";
   j["device"] = r.device;
   j["time"] = formatUtcTime(s.time);
   j["place"] = {{"latitude_deg", s.scene.place.latitudeDeg},
@@ -101,6 +101,15 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
       if (!f.path.empty()) frame["path"] = f.path;
       j["frames"].push_back(std::move(frame));
     }
+  }
+  if (r.traced) {
+    const TraceReport& t = *r.traced;
+    j["samples"] = t.samples;
+    j["noise"] = t.noise;
+    j["complete"] = t.complete;
+    j["paths_per_second"] = t.pathsPerSecond;
+    j["scattering_events"] = t.events;
+    j["events_per_second"] = t.eventsPerSecond;
   }
   j["total_ms"] = r.totalMs;
   j["peak_rss_mib"] = peakRssMib();

@@ -2,7 +2,9 @@
 // `--report`: what was asked, what was delivered and what it cost, as JSON.
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,23 @@ struct FrameReport {
   double ms = 0.0;  // wall clock, writing included
 };
 
+// What the reference renderer says of its work.
+struct TraceReport {
+  std::int64_t samples = 0;  // of each pixel
+  double noise = 0.0;        // reference::SkyFilm::meanRelativeError()
+  bool complete = true;      // not interrupted
+  double pathsPerSecond = 0.0;
+  std::uint64_t events = 0;
+  double eventsPerSecond = 0.0;
+};
+
 struct RenderReport {
   scene::SkyState state;                 // of the first frame
   std::vector<render::PassTime> passes;  // of the first frame, the program's own first
   std::string device;
   std::vector<FrameReport> frames;
   double totalMs = 0.0;
+  std::optional<TraceReport> traced;
 };
 
 // The JSON text of the report.

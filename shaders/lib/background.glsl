@@ -4,6 +4,8 @@
 // Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
 // light that clouds let through to the ground at q.
 
+#include "lib/ground.glsl"
+
 uniform vec3 uGroundAlbedo;
 uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
 uniform float uDiscs;             // 1: draw the discs
@@ -71,10 +73,7 @@ vec3 groundLuminance(vec3 dir, float distanceM) {
   vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
   float incidence = max(dot(up, uKeyDirection), 0.0);
   vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q))) + uSkyOnGround;
-  // Fields and woods: the albedo wanders by a third about its mean over some hundred metres to kilometres.
-  vec2 a = textureLod(uPlacement, vec2(q) / 9000.0, 0.0).xy;
-  float b = textureLod(uPlacement, vec2(q.y, -q.x) / 31000.0, 0.0).y;
-  vec3 albedo = uGroundAlbedo * clamp(1.0 + 0.12 * a.y + 0.12 * b + vec3(0.05, 0.0, -0.05) * a.x, 0.4, 1.6);
+  vec3 albedo = groundAlbedoAt(uGroundAlbedo, uPlacement, vec2(q));
   return albedo * light / 3.14159265;
 }
 

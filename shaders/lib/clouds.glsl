@@ -75,6 +75,12 @@ WELKIN_FN float cloudClearance(CloudLayer layer, vec3 q, float s, float detail) 
   return max(-s - 0.9f * layer.shapeAmount, 0.0f) * layer.reachM;
 }
 
+// Extinction at relative height h in [0, 1] where the cloud is full.
+WELKIN_FN float cloudBodyExtinction(CloudLayer layer, float h) {
+  float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
+  return layer.extinction * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
+}
+
 // Extinction at q, s being cloudSurface there. `detail` in [0, 1] fades the small noise out where it would be smaller than a pixel or
 // a step. clearM: where the density is 0, a distance within which it stays so; else 0.
 WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, sampler3D detailNoise, vec3 q, float s, float detail,
@@ -96,9 +102,7 @@ WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, samp
     s += detail * layer.detailAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h)) * n;
   }
   if (s <= 0.0f) return 0.0f;
-  float body = clamp(s / layer.edge, 0.0f, 1.0f);
-  float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
-  return layer.extinction * body * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
+  return cloudBodyExtinction(layer, h) * clamp(s / layer.edge, 0.0f, 1.0f);
 }
 
 // The same in one go and with all noises.

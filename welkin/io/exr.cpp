@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -61,6 +62,38 @@ Imf::FrameBuffer frameBuffer(T* origin, Imf::PixelType type, int width, int chan
   return buffer;
 }
 
+void addMetadata(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
+                 Imf::Header& header) {
+  for (const auto& [key, text] : metadata) {
+    if (key.empty() || header.find(key) != header.end())
+      throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
+    header.insert(key, Imf::StringAttribute(text));
+  }
+}
+
+std::vector<half> halvesOf(const std::vector<float>& values) {
+  std::vector<half> halves;
+  halves.reserve(values.size());
+  for (const float x : values) halves.emplace_back(std::clamp(x, -kLargestHalf, kLargestHalf));
+  return halves;
+}
+
+void writeFile(const std::filesystem::path& path, const Imf::Header& header, const Imf::FrameBuffer& buffer,
+               int rows) {
+  AtomicFile file(path);
+  try {
+    Stream stream(file);
+    Imf::OutputFile out(stream, header, 0);
+    out.setFrameBuffer(buffer);
+    out.writePixels(rows);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw IoError("cannot write " + path.string() + ": " + e.what());
+  }
+  file.commit();
+}
+
 }  // namespace
 
 void writeExr(const std::filesystem::path& path, const Image<float>& image, const ExrOptions& options) {
@@ -80,32 +113,44 @@ void writeExr(const std::filesystem::path& path, const Image<float>& image, cons
     header.channels().insert(name, Imf::Channel(type));
   Imf::addChromaticities(header, Imf::Chromaticities());  // by default those of Rec. 709
   Imf::addWhiteLuminance(header, 1.0f);
-  for (const auto& [key, text] : options.metadata) {
-    if (key.empty() || header.find(key) != header.end())
-      throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
-    header.insert(key, Imf::StringAttribute(text));
-  }
+  addMetadata(path, options.metadata, header);
 
-  AtomicFile file(path);
-  try {
-    Stream stream(file);
-    std::vector<half> halves;
-    Imf::OutputFile out(stream, header, 0);
-    if (asHalf) {
-      halves.reserve(image.data.size());
-      for (const float x : image.data) halves.emplace_back(std::clamp(x, -kLargestHalf, kLargestHalf));
-      out.setFrameBuffer(frameBuffer(halves.data(), type, image.width, image.channels));
-    } else {
-      out.setFrameBuffer(
-          frameBuffer(const_cast<float*>(image.data.data()), type, image.width, image.channels));
-    }
-    out.writePixels(image.height);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw IoError("cannot write " + path.string() + ": " + e.what());
+  std::vector<half> halves;
+  Imf::FrameBuffer buffer;
+  if (asHalf) {
+    halves = halvesOf(image.data);
+    buffer = frameBuffer(halves.data(), type, image.width, image.channels);
+  } else {
+    buffer = frameBuffer(const_cast<float*>(image.data.data()), type, image.width, image.channels);
   }
-  file.commit();
+  writeFile(path, header, buffer, image.height);
+}
+
+void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& p) {
+  const std::size_t pixels = static_cast<std::size_t>(std::max(p.width, 0)) * std::max(p.height, 0);
+  if (pixels == 0 || p.planes.empty())
+    throw ParameterError("cannot write " + path.string() + ": an EXR has at least one pixel and one channel");
+  Imf::Header header(p.width, p.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());
+  Imf::addWhiteLuminance(header, 1.0f);
+  addMetadata(path, p.metadata, header);
+  const Imf::PixelType type = p.half ? Imf::HALF : Imf::FLOAT;
+  const std::size_t bytes = p.half ? sizeof(half) : sizeof(float);
+  std::vector<std::vector<half>> halves;
+  Imf::FrameBuffer buffer;
+  for (const auto& [name, values] : p.planes) {
+    assert(values.size() == pixels);
+    Image<float> plane(p.width, p.height, 1);
+    plane.data = values;
+    requireFinite(plane);
+    if (p.half) halves.push_back(halvesOf(values));
+    const void* data = p.half ? static_cast<const void*>(halves.back().data()) : values.data();
+    header.channels().insert(name, Imf::Channel(type));
+    buffer.insert(name, Imf::Slice(type, static_cast<char*>(const_cast<void*>(data)), bytes,
+                                   bytes * static_cast<std::size_t>(p.width)));
+  }
+  writeFile(path, header, buffer, p.height);
 }
 
 namespace {
@@ -274,6 +319,50 @@ ExrPicture readExr(const std::filesystem::path& path) {
   picture.half = texels.shape.format.type == ValueType::kHalf;
   picture.metadata = texels.notes.metadata;
   return picture;
+}
+
+ExrPlanes readExrPlanes(const std::filesystem::path& path) {
+  InputFile file(path);
+  checkHeader(file);
+  try {
+    InStream stream(file);
+    Imf::InputFile in(stream, 0);
+    const Imf::Header& header = in.header();
+    const Imath::Box2i window = header.dataWindow();
+    ExrPlanes p;
+    p.width = window.max.x - window.min.x + 1;
+    p.height = window.max.y - window.min.y + 1;
+    p.half = true;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+      p.half = p.half && c.channel().type == Imf::HALF;
+      p.planes.emplace(c.name(), std::vector<float>());
+    }
+    // A plane at a time, each in chunks of rows as they come.
+    for (auto& [name, values] : p.planes) {
+      std::vector<float> rows;
+      for (int y = window.min.y; y <= window.max.y; y += kRowsAtOnce) {
+        const int last = std::min(y + kRowsAtOnce - 1, window.max.y);
+        rows.resize(static_cast<std::size_t>(p.width) * static_cast<std::size_t>(last - y + 1));
+        const std::int64_t offset = std::int64_t{y} * p.width + window.min.x;
+        auto* origin = reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(rows.data()) -
+                                               static_cast<std::uintptr_t>(offset) * sizeof(float));
+        Imf::FrameBuffer buffer;
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, origin, sizeof(float),
+                                       sizeof(float) * static_cast<std::size_t>(p.width)));
+        in.setFrameBuffer(buffer);
+        in.readPixels(y, last);
+        values.insert(values.end(), rows.begin(), rows.end());
+      }
+    }
+    for (auto it = header.begin(); it != header.end(); ++it)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+        p.metadata.emplace(it.name(), text->value());
+    return p;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    file.fail(e.what());
+  }
 }
 
 }  // namespace welkin::io

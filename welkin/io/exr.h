@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "welkin/core/image.h"
 #include "welkin/io/texels.h"
@@ -41,5 +42,16 @@ struct ExrPicture {
 ExrPicture readExr(const std::filesystem::path& path);
 // The same as it is stored: l, rgb or rgba of halves, or of floats unless all channels are halves.
 Texels readExrTexels(const std::filesystem::path& path);
+
+// Planes of 32-bit floats by name, of any number and of any names that the format has: what other programs
+// show as layers.
+struct ExrPlanes {
+  int width = 0, height = 0;
+  std::map<std::string, std::vector<float>> planes;  // row by row from the top; one at least
+  std::map<std::string, std::string> metadata;
+  bool half = false;  // writes halves, values beyond their range clamped; after reading: all were
+};
+void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& planes);  // throws as writeExr()
+ExrPlanes readExrPlanes(const std::filesystem::path& path);                       // as readExr()
 
 }  // namespace welkin::io

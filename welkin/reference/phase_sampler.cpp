@@ -38,7 +38,7 @@ PhaseSampler PhaseSampler::tabulated(const std::function<double(double)>& phase)
     s.densities_.push_back(mean);
     s.shares_.push_back(s.shares_.back() + 2.0 * kPi * mean * (b - a));
   }
-  const double total = s.shares_.back();
+  const double total = s.integral_ = s.shares_.back();
   for (double& d : s.densities_) d /= total;
   for (double& c : s.shares_) c /= total;
   int step = 0;

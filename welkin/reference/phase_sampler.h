@@ -18,9 +18,10 @@ class PhaseSampler {
   double density(double cosine) const;  // 1/sr
   double sampleCosine(double u) const;  // u in [0, 1); rises with u
   double meanCosine() const;
+  double integral() const { return integral_; }  // over the sphere, of the function as it was given
 
  private:
-  double g_ = 0.0;
+  double g_ = 0.0, integral_ = 1.0;
   // Steps between cosines that rise; empty: closed form. The share of light up to each edge, the density
   // inside each step.
   std::vector<double> edges_, shares_, densities_;

@@ -75,6 +75,17 @@ bool isIce(weather::Genus genus) {
          genus == weather::Genus::kCirrostratus;
 }
 
+double dropletDiameterUm(const weather::Weather& weather) {
+  constexpr double kWithoutWater = 16.0;
+  double diameter = 0.0, weight = 1e-9;
+  for (const weather::Layer& layer : weather.layers) {
+    if (isIce(layer.genus)) continue;
+    diameter += 2.0 * layer.effectiveRadiusUm * layer.oktas;
+    weight += layer.oktas;
+  }
+  return diameter > 0.0 ? diameter / weight : kWithoutWater;
+}
+
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter) {
   const Habit& habit = kHabits[static_cast<std::size_t>(layer.genus)];
   const double depth = layer.topM - layer.baseM;

@@ -16,4 +16,8 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
 // Whether the layer is made of ice.
 bool isIce(weather::Genus genus);
 
+// The diameter of droplets whose phase function all layers of water have: their mean, weighted by cover;
+// micrometres.
+double dropletDiameterUm(const weather::Weather& weather);
+
 }  // namespace welkin::scene

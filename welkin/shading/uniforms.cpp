@@ -9,6 +9,7 @@
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/projector.h"
 
 namespace welkin::shading {
 namespace {
@@ -81,14 +82,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uHazeLuminance", state.ambient.haze);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 
-  double diameter = 0.0, weight = 1e-9;
-  for (const weather::Layer& layer : state.weather.layers) {
-    if (scene::isIce(layer.genus)) continue;
-    diameter += 2.0 * layer.effectiveRadiusUm * layer.oktas;
-    weight += layer.oktas;
-  }
   const optics::DropletPhase droplets =
-      optics::dropletPhase(static_cast<float>(diameter > 0.0 ? diameter / weight : 16.0));
+      optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));
   u.put("", "uDroplets.gHg", droplets.gHg);
   u.put("", "uDroplets.gDraine", droplets.gDraine);
   u.put("", "uDroplets.alpha", droplets.alpha);
@@ -169,20 +164,11 @@ Uniforms marchUniforms(const MarchSettings& settings) {
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {
-  const scene::Camera& camera = state.scene.camera;
-  const double heading = radians(state.headingDeg);
-  const bool perspective = camera.projection == scene::Projection::kPerspective;
-  const double pitch = perspective ? radians(camera.pitchDeg) : 0.0;
-  const glm::dvec3 right(std::cos(heading), -std::sin(heading), 0.0);
-  const glm::dvec3 forward(std::sin(heading) * std::cos(pitch), std::cos(heading) * std::cos(pitch),
-                           std::sin(pitch));
-  const glm::dvec3 up(-std::sin(heading) * std::sin(pitch), -std::cos(heading) * std::sin(pitch),
-                      std::cos(pitch));
-  return {{"uProjector.kind", static_cast<int>(camera.projection)},
-          {"uProjector.sizePx", glm::vec2(static_cast<float>(state.scene.output.width),
-                                          static_cast<float>(state.scene.output.height))},
-          {"uProjector.halfWidthTan", static_cast<float>(std::tan(0.5 * radians(camera.fovDeg)))},
-          {"uProjector.enuFromCamera", glm::mat3(glm::dmat3(right, forward, up))}};
+  const scene::Projector p = scene::projectorOf(state);
+  return {{"uProjector.kind", p.kind},
+          {"uProjector.sizePx", p.sizePx},
+          {"uProjector.halfWidthTan", p.halfWidthTan},
+          {"uProjector.enuFromCamera", p.enuFromCamera}};
 }
 
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clear air as a medium that light is traced through: its optical depths by quadrature, its scattering
+// at random. The coefficients and profiles are those of sky/atmosphere.h, tables are not used.
+//
+// Triples are linear Rec. 709 primaries, each with its own coefficients: a primary is traced as one
+// wavelength would be.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "welkin/core/random.h"
+#include "welkin/reference/sphere.h"
+#include "welkin/sky/atmosphere.h"
+
+namespace welkin::reference {
+
+class Air {
+ public:
+  explicit Air(const sky::AtmosphereUniforms& uniforms);
+
+  struct Medium {
+    glm::dvec3 rayleigh, aerosol;  // scattering, 1/m
+    glm::dvec3 extinction;
+  };
+  Medium at(double heightM) const;
+  double topM() const { return top_; }  // height above the ground, where the air ends
+  bool empty() const { return empty_; }
+
+  // Optical depth of the stretch [0, t] of a ray within the air. Steps of the exact integral of an
+  // exponential along the curved way: within 2e-4.
+  glm::dvec3 opticalDepth(const Sphere& earth, const Ray& ray, double t) const;
+  // To space; nothing is known of the ground.
+  glm::dvec3 opticalDepthToSpace(const Sphere& earth, const Ray& ray) const;
+
+  // A place where light may be scattered within [0, t], drawn about in proportion to scattering times
+  // transmittance, mean over primaries weighted by `weights`; and its density, 1/m.
+  struct Place {
+    double t, density;
+  };
+  Place samplePlace(const Sphere& earth, const Ray& ray, double t, const glm::dvec3& weights,
+                    Random& random) const;
+
+  double phaseRayleigh(double cosine) const;
+  double phaseAerosol(double cosine) const;
+  double sampleRayleigh(Random& random) const;
+  double sampleAerosol(Random& random) const;
+
+ private:
+  struct Columns {  // metres of sea-level air, of ground-level aerosol, of the ozone layer's peak
+    double rayleigh = 0.0, aerosol = 0.0, ozone = 0.0;
+  };
+  void addStep(Columns& columns, double h0, double h1, double sagM, double dt) const;
+
+  sky::AtmosphereUniforms u_;
+  double ground_, top_;
+  double fineG_ = 0.0;  // of the haze's wide lobe
+  bool empty_ = false;
+};
+
+// Transmittance to space towards a light's disc from where clouds are, tabulated over height and the cosine
+// of the zenith angle as it is within some hundreds of kilometres; elsewhere computed.
+class AirToLight {
+ public:
+  AirToLight(const Air& air, const Sphere& earth, const glm::dvec3& direction);
+
+  // Towards a point of the disc; 0 where the ground is in the way.
+  glm::dvec3 transmittance(const glm::dvec3& p, const glm::dvec3& way) const;
+
+ private:
+  glm::dvec3 compute(double heightM, double cosine) const;
+
+  const Air* air_;
+  const Sphere* earth_;
+  double firstCosine_ = 0.0;
+  std::vector<glm::dvec3> depths_;  // by height, then by cosine
+};
+
+}  // namespace welkin::reference

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/reference/cloud_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace welkin::reference {
+namespace {
+
+constexpr float kRounding = 1e-4f;  // relative to what is summed; floats round to 6e-8
+constexpr int kMostCells = 4;       // along a side of what is looked up at one level
+
+Interval operator+(Interval a, Interval b) {
+  return {a.low + b.low, a.high + b.high};
+}
+Interval operator*(Interval a, Interval b) {
+  const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+  return {low, high};
+}
+Interval operator*(float a, Interval b) {
+  return Interval{a, a} * b;
+}
+Interval shifted(Interval a, float by) {
+  return {a.low + by, a.high + by};
+}
+Interval united(Interval a, Interval b) {
+  return {std::min(a.low, b.low), std::max(a.high, b.high)};
+}
+
+float smooth(float a, float b, float x) {
+  const float t = std::clamp((x - a) / (b - a), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+Interval smooth(float a, float b, Interval x) {
+  return {smooth(a, b, x.low), smooth(a, b, x.high)};
+}
+
+// Along and across a direction.
+struct Turned {
+  Interval x, y;
+};
+Turned turned(Interval x, Interval y, float c, float s) {
+  return {c * x + s * y, c * y + (-s) * x};
+}
+
+}  // namespace
+
+TexelExtremes::TexelExtremes(const std::vector<float>& values, int nx, int ny, int nz, int channels,
+                             int channel) {
+  Level base{{nx, ny, nz}, {}};
+  for (std::size_t i = static_cast<std::size_t>(channel); i < values.size();
+       i += static_cast<std::size_t>(channels))
+    base.cells.push_back({values[i], values[i]});
+  levels_.push_back(std::move(base));
+  while (levels_.back().n[0] > 1 || levels_.back().n[1] > 1 || levels_.back().n[2] > 1) {
+    const Level& fine = levels_.back();
+    Level coarse{{(fine.n[0] + 1) / 2, (fine.n[1] + 1) / 2, (fine.n[2] + 1) / 2}, {}};
+    for (int z = 0; z < coarse.n[2]; ++z)
+      for (int y = 0; y < coarse.n[1]; ++y)
+        for (int x = 0; x < coarse.n[0]; ++x) {
+          Interval all{1e30f, -1e30f};
+          for (int k = 2 * z; k < std::min(2 * z + 2, fine.n[2]); ++k)
+            for (int j = 2 * y; j < std::min(2 * y + 2, fine.n[1]); ++j)
+              for (int i = 2 * x; i < std::min(2 * x + 2, fine.n[0]); ++i)
+                all = united(all, fine.cells[static_cast<std::size_t>((k * fine.n[1] + j) * fine.n[0] + i)]);
+          coarse.cells.push_back(all);
+        }
+    levels_.push_back(std::move(coarse));
+  }
+}
+
+Interval TexelExtremes::over(glm::vec3 low, glm::vec3 high) const {
+  const int dimensions = levels_.front().n[2] > 1 ? 3 : 2;
+  // Whole texels that filtering reaches, a texel wider than need be: coordinates are rounded here too.
+  int first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
+  for (int a = 0; a < dimensions; ++a) {
+    const int n = levels_.front().n[a];
+    const auto size = static_cast<float>(n);
+    const float x0 = low[a] * size - 0.5f, x1 = high[a] * size - 0.5f;
+    if (!(x1 - x0 < size - 4.0f)) {
+      first[a] = 0, last[a] = n - 1;
+      continue;
+    }
+    const float tiles = std::floor(x0 / size) * size;  // exact: sizes are powers of two, or small
+    first[a] = static_cast<int>(std::floor(x0 - tiles - 0.01f));
+    last[a] = static_cast<int>(std::floor(x1 - tiles + 0.01f)) + 1;
+  }
+  std::size_t level = 0;
+  auto cells = [&](int a) { return (last[a] >> level) - (first[a] >> level) + 1; };
+  while (level + 1 < levels_.size() && std::max({cells(0), cells(1), cells(2)}) > kMostCells) ++level;
+  const Level& l = levels_[level];
+  Interval all{1e30f, -1e30f};
+  auto wrapped = [&](int i, int a) { return ((i % l.n[a]) + l.n[a]) % l.n[a]; };
+  for (int k = first[2] >> level; k <= last[2] >> level; ++k)
+    for (int j = first[1] >> level; j <= last[1] >> level; ++j) {
+      const int row = (wrapped(k, 2) * l.n[1] + wrapped(j, 1)) * l.n[0];
+      for (int i = first[0] >> level; i <= last[0] >> level; ++i)
+        all = united(all, l.cells[static_cast<std::size_t>(row + wrapped(i, 0))]);
+    }
+  return all;
+}
+
+CloudBounds::CloudBounds(const field::CloudField& field) : field_(field) {
+  const field::CloudNoise& n = field.noise();
+  auto plane = [&](int channel) {
+    return TexelExtremes(n.placement.data, n.placement.width, n.placement.height, 1, n.placement.channels,
+                         channel);
+  };
+  cells_ = plane(0), fractal_ = plane(1), patchX_ = plane(0), patchY_ = plane(1), patchZ_ = plane(2);
+  auto volume = [](const Volume<float>& v) { return TexelExtremes(v.data, v.nx, v.ny, v.nz, v.channels, 0); };
+  shape_ = volume(n.shape);
+  detail_ = volume(n.detail);
+}
+
+CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) const {
+  const field::CloudLayer& l = field_.layers()[index];
+  if (box.high.z <= l.baseM || box.low.z >= l.topM) return {};
+  const float depth = l.topM - l.baseM;
+  const Interval h{std::clamp((box.low.z - l.baseM) / depth, 0.0f, 1.0f),
+                   std::clamp((box.high.z - l.baseM) / depth, 0.0f, 1.0f)};
+
+  // cloudPatternPosition, cloudPlacement.
+  const Interval east = shifted(Interval{box.low.x, box.high.x}, -l.driftM.x) + (-l.shearM.x) * h;
+  const Interval north = shifted(Interval{box.low.y, box.high.y}, -l.driftM.y) + (-l.shearM.y) * h;
+  const Turned p = turned(east, north, l.along.x, l.along.y);
+  const Interval ax = 1.0f / l.stretch * p.x, ay = p.y;
+  const Interval ux = 0.8f / l.patchM * ax + (-0.6f / l.patchM) * ay,
+                 uy = 0.6f / l.patchM * ax + 0.8f / l.patchM * ay;
+  const glm::vec3 patchLow(ux.low, uy.low, 0.0f), patchHigh(ux.high, uy.high, 0.0f);
+  const Interval px = patchX_.over(patchLow, patchHigh), py = patchY_.over(patchLow, patchHigh),
+                 pz = patchZ_.over(patchLow, patchHigh);
+  const Interval bx = 1.0f / l.cellM * (ax + l.warpM * py), by = 1.0f / l.cellM * (ay + l.warpM * px);
+  const glm::vec3 cellLow(bx.low, by.low, 0.0f), cellHigh(bx.high, by.high, 0.0f);
+  const Interval placement = l.cellWeight * cells_.over(cellLow, cellHigh) +
+                             l.fractalWeight * fractal_.over(cellLow, cellHigh) + l.patchWeight * pz;
+
+  // cloudProfile.
+  const Interval dome = l.dome * Interval{std::pow(h.low, l.domePower), std::pow(h.high, l.domePower)};
+  const Interval towardsBase{1.0f - h.high, 1.0f - h.low};
+  const Interval belly =
+      l.belly * Interval{towardsBase.low * towardsBase.low, towardsBase.high * towardsBase.high};
+  const Interval anvil = l.anvil * smooth(0.62f, 0.88f, h);
+  const Interval profile = dome + belly + -1.0f * anvil;
+  const float slack = kRounding * (1.0f + std::abs(l.threshold));
+  Interval s = shifted(placement, -l.threshold) + -1.0f * profile;
+  s = {s.low - slack, s.high + slack};
+
+  // cloudShapeAmount, cloudClearance.
+  auto amount = [&](float surface, float height) {
+    const float byHeight = l.shapeAtBase + (1.0f - l.shapeAtBase) * smooth(0.0f, 0.35f, height);
+    return l.shapeAmount * byHeight * smooth(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, surface);
+  };
+  const bool risesUp = l.shapeAtBase <= 1.0f;
+  const Interval amounts = l.shapeAmount > 0.0f ? Interval{amount(s.low, risesUp ? h.low : h.high),
+                                                           amount(s.high, risesUp ? h.high : h.low)}
+                                                : Interval{};
+  if (s.high + 2.5f * amounts.high + 2.0f * l.detailAmount <= 0.0f) return {};
+
+  // cloudExtinctionFrom.
+  const Interval qx = 1.0f / l.shapeStretch * p.x, qy = p.y, qz{box.low.z, box.high.z};
+  auto over = [&](const TexelExtremes& noise, const field::vec3& shift, float period) {
+    return noise.over(
+        {(qx.low - shift.x) / period, (qy.low - shift.y) / period, (qz.low - shift.z) / period},
+        {(qx.high - shift.x) / period, (qy.high - shift.y) / period, (qz.high - shift.z) / period});
+  };
+  s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
+  if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};
+  if (l.detailAmount > 0.0f && s.low < l.edge + 2.0f * l.detailAmount) {
+    const Interval byHeight =
+        shifted((1.0f - l.shapeAtBase) * Interval{smooth(0.0f, 0.2f, h.low), smooth(0.0f, 0.2f, h.high)},
+                l.shapeAtBase);
+    const Interval detail = l.detailAmount * (byHeight * over(detail_, l.detailShiftM, l.detailM));
+    s = s + Interval{std::min(detail.low, 0.0f), std::max(detail.high, 0.0f)};  // may be left out
+  }
+  s = {s.low - slack, s.high + slack};
+  if (s.high <= 0.0f) return {};
+  const float body = std::clamp(s.high / l.edge, 0.0f, 1.0f);
+  const float vertical = smooth(0.0f, l.bottomSoft, h.high) * smooth(0.0f, l.topSoft, 1.0f - h.low);
+  auto lift = [&](float height) { return 1.0f + (0.4f + 0.9f * std::sqrt(height) - 1.0f) * l.lift; };
+  const float highest = l.extinction * body * vertical * std::max(lift(h.low), lift(h.high));
+  return {highest * (1.0f + kRounding), s.low >= l.edge};
+}
+
+}  // namespace welkin::reference

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clouds of a sky as a medium that light is traced through by null collisions: collisions and
+// transmittances without bias, of exactly the density that field/cloud_field.h defines, with all its detail
+// at any distance.
+//
+// E. R. Woodcock et al. 1965, "Techniques used in the GEM code for Monte Carlo neutronics calculations"
+// (collisions); J. Novak, A. Selle and W. Jarosz 2014, "Residual Ratio Tracking for Estimating Attenuation in
+// Participating Media" (transmittance). Majorants are local: majorant_grid.h.
+#pragma once
+
+#include <optional>
+
+#include "welkin/core/random.h"
+#include "welkin/reference/majorant_grid.h"
+#include "welkin/reference/sphere.h"
+
+namespace welkin::reference {
+
+class CloudMedium {
+ public:
+  // field: outlives this. layers: indices of those that are traced; ice: whether a layer of the field is.
+  CloudMedium(const field::CloudField& field, const std::vector<int>& layers, std::vector<bool> ice);
+
+  struct Collision {
+    double t = 0.0;  // along the ray
+    bool ice = false;
+  };
+  // The first collision in [0, end), or none.
+  std::optional<Collision> collide(const Ray& ray, double end, Random& random) const;
+
+  // An estimate of the transmittance over [0, end), in [0, ...): its mean is the transmittance.
+  double transmittance(const Ray& ray, double end, Random& random) const;
+
+  // Extinction at a place, 1/m.
+  double extinction(const glm::dvec3& p) const;
+
+  const MajorantGrid* grid() const { return grid_ ? &*grid_ : nullptr; }
+  const Sphere& earth() const { return earth_; }
+
+ private:
+  struct Point {
+    float extinction = 0.0f, ice = 0.0f;  // all, and the ice of it
+  };
+  Point pointIn(const MajorantGrid::Brick& brick, const glm::dvec3& p) const;
+
+  // Calls f(brick, t0, t1) for the bricks along [0, end) that may have cloud, until it returns true.
+  template <class F>
+  void walk(const Ray& ray, double end, F&& f) const;
+
+  const field::CloudField& field_;
+  std::vector<bool> ice_;
+  Sphere earth_;
+  std::optional<MajorantGrid> grid_;  // none: no layers
+};
+
+}  // namespace welkin::reference

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/reference/sky_lights.h"
+
+#include <cmath>
+
+#include "welkin/reference/directions.h"
+
+namespace welkin::reference {
+namespace {
+
+// Limb darkening of the sun, (1 - x^2)^(kLimb / 2) over the disc: D. Hestroffer and C. Magnan 1998,
+// "Wavelength dependency of the Solar limb darkening", at 550 nm.
+constexpr double kLimb = 0.41;
+constexpr double kMostSecond = 0.9;  // chance of the second light: the first may be up where light goes next
+constexpr double kLeastLit = 0.005;  // of the moon, as wherever its disc is drawn
+
+double sum(const glm::dvec3& v) {
+  return v.x + v.y + v.z;
+}
+
+}  // namespace
+
+SkyLights::SkyLights(const scene::SkyState& state, const Air& air, const Sphere& earth)
+    : sunDirection_(glm::normalize(state.ephemeris.sun.direction)) {
+  for (std::size_t i = 0; i < state.lights.size(); ++i) {
+    const sky::Light& light = state.lights[i];
+    const bool isSun = (i == 0) == state.litBySun;
+    if (!(light.illuminance.y > 0.0f)) continue;
+    const sky::Body& body = isSun ? state.ephemeris.sun : state.ephemeris.moon;
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction));
+    discs_.push_back({isSun, direction, glm::dvec3(light.illuminance), body.angularRadiusRad,
+                      isSun ? 1.0 : std::max(state.ephemeris.moonIlluminatedFraction, kLeastLit),
+                      AirToLight(air, earth, direction)});
+  }
+}
+
+LightSample SkyLights::sample(const glm::dvec3& p, Random& random) const {
+  if (discs_.empty()) return {};
+  auto aimed = [&](const Disc& disc) {
+    // Of a share u of the sun's light the middle x = r / radius: 1 - u = (1 - x^2)^(1 + kLimb / 2).
+    const double u = unit(random);
+    const double x2 = disc.isSun ? 1.0 - std::pow(1.0 - u, 1.0 / (1.0 + 0.5 * kLimb)) : u;
+    return turned(disc.direction, std::cos(disc.radius * std::sqrt(x2)), 2.0 * kPi * unit(random));
+  };
+  const Disc& first = discs_.front();
+  const glm::dvec3 direction = aimed(first);
+  if (discs_.size() == 1) return {direction, 0, 1.0};
+  // The second is looked at as often as it may matter beside the first.
+  const double some = sum(first.illuminance * first.through.transmittance(p, direction)),
+               most = sum(discs_[1].illuminance), chance = std::min(most / (most + some), kMostSecond);
+  if (unit(random) >= chance) return {direction, 0, 1.0 / (1.0 - chance)};
+  return {aimed(discs_[1]), 1, 1.0 / chance};
+}
+
+glm::dvec3 SkyLights::illuminance(const LightSample& light, const glm::dvec3& p) const {
+  if (light.disc < 0) return glm::dvec3(0.0);
+  const Disc& disc = discs_[static_cast<std::size_t>(light.disc)];
+  return light.weight * disc.illuminance * disc.through.transmittance(p, light.direction);
+}
+
+glm::dvec3 SkyLights::discs(const glm::dvec3& direction) const {
+  glm::dvec3 luminance(0.0);
+  for (const Disc& disc : discs_) {
+    const double x = glm::length(direction - disc.direction) / disc.radius;
+    if (x >= 1.0) continue;
+    const glm::dvec3 mean = disc.illuminance / (kPi * disc.radius * disc.radius * disc.share);
+    const double mu = std::sqrt(1.0 - x * x);
+    if (disc.isSun) {
+      luminance += mean * (std::pow(mu, kLimb) * (1.0 + 0.5 * kLimb));
+      continue;
+    }
+    // Lit by the sun as a dusty sphere (Lommel and Seeliger), with a trace of earthshine.
+    const glm::dvec3 across = direction - disc.direction * glm::dot(direction, disc.direction);
+    const double far = glm::length(across);
+    const glm::dvec3 normal = (far > 0.0 ? across / far * x : across) - disc.direction * mu;
+    const double mu0 = std::max(glm::dot(normal, sunDirection_), 0.0);
+    luminance += mean * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+  }
+  return luminance;
+}
+
+}  // namespace welkin::reference

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/reference/sky_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/exponential.hpp>
+#include <string>
+#include <vector>
+
+#include "welkin/core/error.h"
+#include "welkin/core/glsl.h"
+#include "welkin/optics/mie_phase.h"
+#include "welkin/optics/phase.h"
+#include "welkin/reference/cloud_medium.h"
+#include "welkin/reference/directions.h"
+#include "welkin/reference/phase_sampler.h"
+#include "welkin/reference/sky_lights.h"
+#include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/projector.h"
+
+namespace welkin::reference {
+namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+using field::CloudLayer;
+#include "shaders/lib/clouds.glsl"
+// Keeps the order of the two apart.
+#include "shaders/lib/ground.glsl"
+}  // namespace shared
+
+// A path whose throughput is below the one goes on with a chance, and with the other.
+constexpr double kRouletteBelow = 0.03, kRouletteTo = 0.1;
+// What droplets scatter forward beyond this, 1/sr, is their peak: see gather().
+constexpr double kPeakAbove = 0.3;
+// How often air and ground look for light by way of clouds.
+constexpr double kChainOfOthers = 0.25;
+constexpr std::size_t kLongestChain = 24;
+
+double sum(const glm::dvec3& v) {
+  return v.x + v.y + v.z;
+}
+double largest(const glm::dvec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+PhaseSampler dropletPhase(const scene::SkyState& state, DropletModel model) {
+  const double diameter = scene::dropletDiameterUm(state.weather);
+  if (model == DropletModel::kMie)
+    return PhaseSampler::tabulated([=](double c) { return optics::phaseMieDroplet(c, diameter); });
+  const optics::DropletPhase fit = optics::dropletPhase(static_cast<float>(diameter));
+  return PhaseSampler::tabulated([=](double c) { return optics::phaseDroplet(static_cast<float>(c), fit); });
+}
+
+// Ice as shaders/lib/march.glsl has it.
+double icePhase(double c) {
+  const auto x = static_cast<float>(c);
+  return 0.55 * optics::phaseHenyeyGreenstein(x, 0.92f) + 0.45 * optics::phaseHenyeyGreenstein(x, 0.55f);
+}
+
+// The layers that are volumes. Throws for what this renderer does not trace.
+std::vector<int> tracedLayers(const scene::SkyState& state) {
+  const std::string who = "the reference renderer does not trace ";
+  if (!state.scene.sheets.empty())
+    throw ParameterError(who + "[[sheet]]s; expected a scene of volumes, or the renderer gpu");
+  if (!state.scene.skyBox.empty())
+    throw ParameterError(who + "a [sky_box]; expected a scene without one, or the renderer gpu");
+  std::vector<int> layers;
+  for (std::size_t i = 0; i < state.weather.layers.size(); ++i) {
+    if (scene::isSheet(state.scene, state.weather.layers[i]))
+      throw ParameterError(who + "layers drawn as thin sheets (layer " + std::to_string(i + 1) +
+                           "); expected the technique volume, or the renderer gpu");
+    layers.push_back(static_cast<int>(i));
+  }
+  return layers;
+}
+
+std::vector<bool> iceOf(const scene::SkyState& state) {
+  std::vector<bool> ice;
+  for (const weather::Layer& layer : state.weather.layers) ice.push_back(scene::isIce(layer.genus));
+  return ice;
+}
+
+}  // namespace
+
+struct SkyTracer::Impl {
+  Impl(const scene::SkyState& s, const SkySettings& settings)
+      : state(s),
+        seed(settings.seed),
+        projector(scene::projectorOf(s)),
+        earth(s.clouds->earthRadiusM()),
+        clouds(*s.clouds, tracedLayers(s), iceOf(s)),
+        air(s.atmosphere->uniforms()),
+        lights(s, air, earth),
+        droplets(dropletPhase(s, settings.droplets)),
+        ice(PhaseSampler::tabulated(icePhase)),
+        peak(PhaseSampler::tabulated(
+            [&](double c) { return std::max(droplets.density(c) - kPeakAbove, 0.0); })),
+        airglow(s.atmosphere->uniforms().airglow),
+        airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM) {}
+
+  const scene::SkyState state;
+  std::uint64_t seed;
+  scene::Projector projector;
+  Sphere earth;
+  CloudMedium clouds;
+  Air air;
+  SkyLights lights;
+  PhaseSampler droplets, ice;
+  PhaseSampler peak;  // of the droplets, by itself; its integral is its share of all they scatter
+  glm::dvec3 airglow;
+  double airglowHeight;
+
+  // A path on its way to its next event.
+  struct Path {
+    Ray ray;
+    glm::dvec3 throughput{1.0};
+    bool first = false;  // straight from the eye
+  };
+  // What is carried while all parts of a path are followed.
+  struct Work {
+    Random random;
+    SkySample sample;
+  };
+
+  SkySample traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs) const;
+  void follow(Path path, Work& work) const;
+
+  double end(const Ray& ray) const {  // of a ray's way through air and clouds
+    double near = 0.0, far = 0.0;
+    const double out = earth.crossings(ray, air.topM(), near, far) ? std::max(far, 0.0) : 0.0;
+    return earth.toGround(ray, out);
+  }
+  bool meetsGround(const Ray& ray) const { return earth.toGround(ray, -1.0) >= 0.0; }
+
+  glm::dvec3 throughAir(const Ray& ray, double t) const {
+    return air.empty() ? glm::dvec3(1.0) : glm::exp(-air.opticalDepth(earth, ray, t));
+  }
+
+  // The night sky above the air: shaders/lib/atmosphere.glsl.
+  glm::dvec3 above(const Ray& ray) const {
+    const double h = earth.height(ray.from);
+    if (h >= airglowHeight) return glm::dvec3(0.0);
+    const double mu = earth.cosine(ray.from, ray.way),
+                 q = (earth.radiusM() + h) / (earth.radiusM() + airglowHeight);
+    return airglow / std::sqrt(std::max(1.0 - q * q * (1.0 - mu * mu), 1e-4));
+  }
+
+  // An estimate of what clouds let through from p to space.
+  double throughClouds(const glm::dvec3& p, const glm::dvec3& way, Work& work) const {
+    const Ray ray{p, way};
+    return clouds.transmittance(ray, end(ray), work.random);
+  }
+
+  // Adds what reaches the eye of the light that scatters or reflects at p, the path's throughput being for
+  // all but the direction. value(w): the share that leaves on the path of light that comes from w, 1/sr.
+  // chain: how often light is looked for that comes by way of clouds.
+  template <class Value>
+  void gather(const Path& path, const glm::dvec3& p, double chain, Value&& value, Work& work) const;
+  template <class Value>
+  void gatherByPeaks(const Path& path, const glm::dvec3& p, const LightSample& light, double chance,
+                     Value&& value, Work& work) const;
+
+  void scatterInAir(Path& path, const glm::dvec3& p, const Air::Medium& m, Work& work) const;
+  void scatterInCloud(Path& path, const glm::dvec3& p, bool isIce, Work& work) const;
+  bool reflect(Path& path, const glm::dvec3& p, Work& work) const;
+  void airEvent(Path& path, double t, const glm::dvec3& weights, double chance, Work& work) const;
+};
+
+// Scattering somewhere in [0, t] of the path's ray, which was chosen with a chance.
+void SkyTracer::Impl::airEvent(Path& path, double t, const glm::dvec3& weights, double chance,
+                               Work& work) const {
+  const Air::Place place = air.samplePlace(earth, path.ray, t, weights, work.random);
+  const glm::dvec3 p = path.ray.at(place.t);
+  const Air::Medium m = air.at(earth.height(p));
+  path.throughput *= throughAir(path.ray, place.t) * (m.rayleigh + m.aerosol) / (place.density * chance);
+  scatterInAir(path, p, m, work);
+}
+
+// Droplets scatter half of the light by a few degrees. A path that happens to point at the sun so closely
+// finds a thousand times the usual, and pictures need as many paths as it takes for that to even out. So the
+// phase function is taken for a sum of a peak and a rest that is nowhere large. Of the scatterings of a way
+// of light from the sun to the eye, the last ones in a cloud that are by the peak make a chain; the event
+// before them, by the rest, finds the light: straight where there is no chain, else along a chain drawn from
+// the sun's side, whose directions follow the peaks one after the other, and which is walked towards the sun
+// from collision to collision. Each way of light is found once, and none carries much. (R. Buras and B. Mayer
+// 2011, "Efficient unbiased variance reduction techniques for Monte Carlo simulations of radiative transfer
+// in cloudy atmospheres: The solution", has the problem and another cure.)
+template <class Value>
+void SkyTracer::Impl::gather(const Path& path, const glm::dvec3& p, double chain, Value&& value,
+                             Work& work) const {
+  const LightSample light = lights.sample(p, work.random);
+  if (light.disc < 0) return;
+  const glm::dvec3 lit = path.throughput * value(light.direction) * lights.illuminance(light, p);
+  if (sum(lit) != 0.0) work.sample.luminance += lit * throughClouds(p, light.direction, work);
+  if (clouds.grid() && unit(work.random) < chain) gatherByPeaks(path, p, light, chain, value, work);
+}
+
+template <class Value>
+void SkyTracer::Impl::gatherByPeaks(const Path& path, const glm::dvec3& p, const LightSample& light,
+                                    double chance, Value&& value, Work& work) const {
+  Random& random = work.random;
+  // From the sun's side; of n with the chance of peak.integral()^(n - 1) (1 - peak.integral()).
+  std::array<glm::dvec3, kLongestChain> ways;
+  const double share = peak.integral();
+  std::size_t n = 0;
+  glm::dvec3 way = light.direction;
+  do {
+    way = turned(way, peak.sampleCosine(unit(random)), 2.0 * kPi * unit(random));
+    ways[n++] = way;
+  } while (n < kLongestChain && unit(random) < share);
+  const double left = n < kLongestChain ? 1.0 - share : 1.0;
+  glm::dvec3 lit = path.throughput * value(way) * share / (chance * left);
+  if (sum(lit) == 0.0) return;
+  glm::dvec3 at = p;
+  while (n > 0) {
+    const Ray ray{at, ways[--n]};
+    const auto collision = clouds.collide(ray, end(ray), random);
+    if (!collision || collision->ice) return;  // ice has no peak
+    lit *= throughAir(ray, collision->t);
+    at = ray.at(collision->t);
+  }
+  lit *= lights.illuminance(light, at);
+  if (sum(lit) != 0.0) work.sample.luminance += lit * throughClouds(at, light.direction, work);
+}
+
+void SkyTracer::Impl::scatterInAir(Path& path, const glm::dvec3& p, const Air::Medium& m, Work& work) const {
+  Random& random = work.random;
+  const glm::dvec3 scattering = glm::max(m.rayleigh + m.aerosol, glm::dvec3(1e-300));
+  const glm::dvec3 rayleigh = m.rayleigh / scattering, aerosol = m.aerosol / scattering;
+  ++work.sample.events;
+  const glm::dvec3 from = path.ray.way;
+  gather(
+      path, p, kChainOfOthers,
+      [&](const glm::dvec3& w) {
+        const double c = glm::dot(from, w);
+        return rayleigh * air.phaseRayleigh(c) + aerosol * air.phaseAerosol(c);
+      },
+      work);
+  const double share = sum(path.throughput * aerosol) / sum(path.throughput);
+  const double c = unit(random) < share ? air.sampleAerosol(random) : air.sampleRayleigh(random);
+  const double pr = air.phaseRayleigh(c), pa = air.phaseAerosol(c);
+  path.throughput *= (rayleigh * pr + aerosol * pa) / ((1.0 - share) * pr + share * pa);
+  path.ray = {p, turned(from, c, 2.0 * kPi * unit(random))};
+}
+
+void SkyTracer::Impl::scatterInCloud(Path& path, const glm::dvec3& p, bool isIce, Work& work) const {
+  Random& random = work.random;
+  const PhaseSampler& phase = isIce ? ice : droplets;
+  ++work.sample.events;
+  const glm::dvec3 from = path.ray.way;
+  // The first event of all has none before it that would find its peak.
+  const bool whole = isIce || path.first;
+  gather(
+      path, p, peak.integral(),
+      [&](const glm::dvec3& w) {
+        const double c = glm::dot(from, w);
+        return phase.density(c) - (whole ? 0.0 : peak.integral() * peak.density(c));
+      },
+      work);
+  path.ray = {p, turned(from, phase.sampleCosine(unit(random)), 2.0 * kPi * unit(random))};
+  path.first = false;
+}
+
+bool SkyTracer::Impl::reflect(Path& path, const glm::dvec3& p, Work& work) const {
+  Random& random = work.random;
+  ++work.sample.events;
+  const glm::dvec3 up = earth.up(p);
+  const auto q = shared::cloudPosition(glm::vec3(p), static_cast<float>(earth.radiusM()));
+  const shared::sampler2D placement{&state.clouds->noise().placement, shared::Wrap::kRepeat,
+                                    shared::Wrap::kRepeat};
+  path.throughput *=
+      glm::dvec3(shared::groundAlbedoAt(glm::vec3(state.scene.ground.albedo), placement, glm::vec2(q)));
+  if (sum(path.throughput) <= 0.0) return false;
+  gather(
+      path, p, kChainOfOthers, [&](const glm::dvec3& w) { return std::max(glm::dot(w, up), 0.0) / kPi; },
+      work);
+  path.ray = {p, lambertDirection(up, random)};
+  return true;
+}
+
+void SkyTracer::Impl::follow(Path path, Work& work) const {
+  Random& random = work.random;
+  for (;;) {
+    const double most = largest(path.throughput);
+    if (most < kRouletteBelow) {
+      if (unit(random) * kRouletteTo >= most) return;
+      path.throughput *= kRouletteTo / most;
+    }
+    const double out = end(path.ray);
+    const auto collision = clouds.collide(path.ray, out, random);
+    const double t = collision ? collision->t : out;
+    if (!air.empty()) {
+      // One event of the two, each with the chance of its share of the light.
+      const glm::dvec3 through = throughAir(path.ray, t);
+      const double chance = sum(path.throughput * (1.0 - through)) / sum(path.throughput);
+      if (unit(random) < chance) {
+        const glm::dvec3 weights = path.throughput;
+        airEvent(path, t, weights, chance, work);
+        continue;
+      }
+      path.throughput *= through / (1.0 - chance);
+    }
+    if (collision) {
+      scatterInCloud(path, path.ray.at(t), collision->ice, work);
+    } else if (meetsGround(path.ray)) {
+      if (!reflect(path, path.ray.at(t), work)) return;
+    } else {
+      work.sample.luminance += path.throughput * above(path.ray);
+      return;
+    }
+  }
+}
+
+SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs) const {
+  Work work{Random(seedOfPath), {}};
+  Ray ray{{0.0, 0.0, state.scene.camera.eyeM}, way};
+  double near = 0.0, far = 0.0;
+  glm::dvec3 onDisc(0.0);
+  if (discs && !meetsGround(ray)) onDisc = lights.discs(way);
+  if (!earth.crossings(ray, air.topM(), near, far) || far <= 0.0) {
+    work.sample.luminance = onDisc;
+    return work.sample;
+  }
+  if (near > 0.0) ray.from = ray.at(near);
+
+  // The first piece is followed twice: to a scattering in the air, and to what is behind it.
+  const double out = end(ray);
+  const auto collision = clouds.collide(ray, out, work.random);
+  work.sample.cloud = collision.has_value();
+  const double t = collision ? collision->t : out;
+  glm::dvec3 through(1.0);
+  if (!air.empty()) {
+    through = throughAir(ray, t);
+    const double share = sum(1.0 - through) / 3.0;
+    // Air that adds little is worth few paths.
+    const double chance = std::min(1.0, 4.0 * share);
+    if (share > 0.0 && unit(work.random) < chance) {
+      Path path{ray, glm::dvec3(1.0), false};
+      airEvent(path, t, glm::dvec3(1.0), chance, work);
+      follow(path, work);
+    }
+  }
+  Path path{ray, through, true};
+  bool on = true;
+  if (collision) {
+    scatterInCloud(path, ray.at(t), collision->ice, work);
+  } else if (meetsGround(ray)) {
+    on = reflect(path, ray.at(t), work);
+  } else {
+    work.sample.luminance += through * (above(ray) + onDisc);
+    on = false;
+  }
+  if (on) follow(path, work);
+  return work.sample;
+}
+
+SkyTracer::SkyTracer(const scene::SkyState& state, const SkySettings& settings)
+    : impl_(std::make_unique<const Impl>(state, settings)) {}
+SkyTracer::~SkyTracer() = default;
+
+int SkyTracer::width() const {
+  return static_cast<int>(impl_->state.scene.output.width);
+}
+int SkyTracer::height() const {
+  return static_cast<int>(impl_->state.scene.output.height);
+}
+
+SkySample SkyTracer::trace(int x, int y, std::uint64_t index) const {
+  const std::uint64_t pixel =
+      static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(width()) + static_cast<std::uint64_t>(x);
+  Random random(hashOf(impl_->seed, pixel, index));
+  glm::vec3 direction(0.0f);
+  float pixelRad = 0.0f;
+  const glm::vec2 px(static_cast<float>(x + unit(random)), static_cast<float>(y + unit(random)));
+  if (!scene::directionAt(impl_->projector, px, direction, pixelRad)) return {};
+  return impl_->traceFrom(glm::normalize(glm::dvec3(direction)), random.next(),
+                          impl_->state.scene.output.sunDisc);
+}
+
+SkySample SkyTracer::traceDirection(const glm::dvec3& direction, std::uint64_t index) const {
+  return impl_->traceFrom(glm::normalize(direction), hashOf(impl_->seed, std::uint64_t{0x5d1a}, index),
+                          impl_->state.scene.output.sunDisc);
+}
+
+}  // namespace welkin::reference
