@@ -202,6 +202,40 @@ FrameTable measureFrames() {
   whole("640x360, octaves of stratocumulus, lit, whole frame", scene::SheetTier::kLit);
   whole("640x360, octaves of stratocumulus, embossed, whole frame", scene::SheetTier::kEmbossed);
 
+  // Marched volumes: a sixteenth of the pixels, and of the light volume, a frame, while time runs.
+  const auto marched = [&](const std::string& name, std::initializer_list<weather::Genus> genera, double eyeM,
+                           scene::Quality quality) {
+    skies.push_back(std::make_unique<render::LiveSky>());
+    render::LiveSky* sky = skies.back().get();
+    scene::Scene s;
+    for (const weather::Genus genus : genera)
+      s.layers.push_back(weather::typicalLayer(genus, s.place.latitudeDeg));
+    for (weather::Layer& layer : s.layers) layer.oktas = 4.0;
+    s.camera.eyeM = eyeM;
+    s.camera.pitchDeg = eyeM > 100.0 ? -10.0 : 14.0;
+    s.output.quality = quality;
+    s.output.width = small.width();
+    s.output.height = small.height();
+    auto frame = std::make_shared<int>(0);
+    cases.push_back({"640x360, " + name,
+                     {},
+                     [=, &smallTarget] {
+                       sky->update(s, (*frame)++ / 10.0);
+                       sky->draw(shading::viewOf(sky->state()), smallTarget, {.scale = 1e-4f});
+                     },
+                     {},
+                     2});
+  };
+  using weather::Genus;
+  for (const auto& [quality, word] : {std::pair{scene::Quality::kLow, "low"},
+                                      {scene::Quality::kMedium, "medium"},
+                                      {scene::Quality::kHigh, "high"}}) {
+    marched(std::string("cumulus marched from the ground, ") + word, {Genus::kCumulus}, 2.0, quality);
+    marched(std::string("cumulus marched from 3.5 km, ") + word, {Genus::kCumulus}, 3500.0, quality);
+  }
+  marched("cumulonimbus marched from the ground, medium", {Genus::kCumulonimbus}, 2.0,
+          scene::Quality::kMedium);
+
   for (int round = 0; round <= kRounds; ++round)
     for (Case& c : cases) {
       gpu::Stopwatch watch;

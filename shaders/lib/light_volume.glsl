@@ -15,6 +15,7 @@ uniform float uSliceCount;         // of one cascade
 uniform float uCascadeHalfM[kCascades];
 uniform vec3 uLine;                // unit, z > 0
 uniform float uLineTowardsSun;     // 1: towards the sun, 0: away from it
+uniform vec2 uLightShiftM;         // from the eye's frame to the volume's: where the eye and the wind have moved since it was swept
 
 // Slice at a height, fractional. Between bands: the first slice of the band above (from below) has all that lies above.
 float lightVolumeSlice(float heightM) {
@@ -34,6 +35,7 @@ vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
 
 // Towards the border of a cascade it is blended with the next.
 vec4 lightVolumeAt(sampler3D volume, vec3 q) {
+  q += vec3(uLightShiftM, 0.0);
   float reach = max(abs(q.x), abs(q.y));
   float slice = lightVolumeSlice(q.z);
   int cascade = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "welkin/gpu/framebuffer.h"
 #include "welkin/render/programs.h"
 
 namespace welkin::render {
@@ -13,79 +11,114 @@ namespace {
 
 constexpr int kSide = shading::LightVolumeLayout::kColumns;
 constexpr int kMostSamples = 6;  // of density along the line between two slices
+// A slice on the way down samples density, on the way up only textures.
+constexpr float kCostDown = 4.0f, kCostUp = 1.0f;
 
 }  // namespace
 
 LightVolumePass::LightVolumePass() : down_(fullscreenProgram("pass/light_volume_down.frag")) {
-  for (gpu::Texture2D& t : neighbour_) t = gpu::Texture2D(kSide, kSide, {.format = gpu::Format::kRgba32F});
+  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+    neighbours_[i] = gpu::Texture2D(kSide, kSide, {.format = gpu::Format::kRgba32F});
+    targets_[i].attach(0, neighbours_[i]);
+  }
 }
 
 void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
                            const CloudTextures& clouds) {
-  const int cascades = static_cast<int>(layout.kHalfM.size());
-  const int depth = std::max<int>(1, static_cast<int>(layout.heightsM.size())) * cascades;
-  if (volume_.depth() != depth) {
-    upward_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
-    volume_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
-  }
-  if (layout.heightsM.empty()) return;  // a clear sky: nothing asks for the volume
-  const shading::Uniforms uniforms = shading::cloudUniforms(state);
-  for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) {
-    gpu::Program& up = up_.with(shading::bandDefines(layout, b));
-    setUniforms(up, uniforms);
-    up.set("uLine", layout.line);
-  }
-  down_.set("uLine", layout.line);
-  for (int c = 0; c < cascades; ++c) sweepCascade(layout, c, clouds);
+  begin(shading::cloudUniforms(state), layout);
+  advance(kParts, clouds);
 }
 
-void LightVolumePass::sweepCascade(const shading::LightVolumeLayout& layout, int cascade,
-                                   const CloudTextures& clouds) {
-  const int slices = static_cast<int>(layout.heightsM.size());
-  const float halfM = layout.kHalfM[static_cast<std::size_t>(cascade)];
-  const float voxelM = 2.0f * halfM / kSide;
-  auto layer = [&](int slice) { return cascade * slices + slice; };
-  auto texelW = [&](int slice) {
-    return (static_cast<float>(layer(slice)) + 0.5f) /
-           static_cast<float>(slices * static_cast<int>(layout.kHalfM.size()));
-  };
-  auto clearNeighbour = [&] { gpu::Framebuffer(neighbour_[0]).clear(); };
+int LightVolumePass::steps() const {
+  return 2 * static_cast<int>(layout_.heightsM.size() * layout_.kHalfM.size());
+}
 
-  clearNeighbour();
-  int band = static_cast<int>(layout.bands.size()) - 1;
-  for (int k = slices - 1; k >= 0; --k) {
-    while (k < layout.bands[static_cast<std::size_t>(band)].firstSlice) --band;
-    gpu::Program& up = up_.with(shading::bandDefines(layout, band));
-    up.set("uHalfM", halfM);
-    const float height = layout.heightsM[static_cast<std::size_t>(k)];
-    const float above = k + 1 < slices ? layout.heightsM[static_cast<std::size_t>(k + 1)] : height;
-    const float shiftM = (above - height) / layout.line.z;
-    gpu::Framebuffer target(neighbour_[1]);
+float LightVolumePass::cost(int step) const {
+  const int slices = static_cast<int>(layout_.heightsM.size());
+  return step % (2 * slices) < slices ? kCostDown : kCostUp;
+}
+
+void LightVolumePass::begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout) {
+  const bool same = layout.bands == layout_.bands && upOfBand_.size() == layout.bands.size();
+  layout_ = layout;
+  const int cascades = static_cast<int>(layout.kHalfM.size());
+  const int depth = std::max<int>(1, static_cast<int>(layout.heightsM.size())) * cascades;
+  if (upward_.depth() != depth) {
+    upward_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
+    for (gpu::Texture3D& v : volumes_) v = {};
+  }
+  if (gpu::Texture3D& next = volumes_[1 - front_]; next.id() == 0)
+    next = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
+  if (!same) {
+    upOfBand_.clear();
+    for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b)
+      upOfBand_.push_back(&up_.with(shading::bandDefines(layout, b)));
+  }
+  for (gpu::Program* up : upOfBand_) {
+    setUniforms(*up, layers);
+    up->set("uLine", layout.line);
+  }
+  down_.set("uLine", layout.line);
+  step_ = 0;
+  credit_ = 0.0f;
+  if (steps() == 0) front_ = 1 - front_;  // a clear sky: nothing asks for the volume
+}
+
+bool LightVolumePass::advance(int parts, const CloudTextures& clouds) {
+  if (!inProgress()) return false;
+  credit_ += static_cast<float>(parts) / kParts * 0.5f * (kCostDown + kCostUp) * static_cast<float>(steps());
+  for (; inProgress() && credit_ > 0.0f; ++step_) {
+    sweepStep(step_, clouds);
+    credit_ -= cost(step_);
+  }
+  if (inProgress()) return false;
+  front_ = 1 - front_;
+  return true;
+}
+
+void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {
+  const int slices = static_cast<int>(layout_.heightsM.size());
+  const int cascade = step / (2 * slices), inCascade = step % (2 * slices);
+  const float halfM = layout_.kHalfM[static_cast<std::size_t>(cascade)];
+  const auto layer = [&](int slice) { return cascade * slices + slice; };
+  const auto heightOf = [&](int slice) { return layout_.heightsM[static_cast<std::size_t>(slice)]; };
+  if (inCascade % slices == 0) targets_[last_].clear();
+  gpu::Framebuffer& target = targets_[1 - last_];
+  const gpu::Texture2D& neighbour = neighbours_[last_];
+  last_ = 1 - last_;
+
+  if (inCascade < slices) {
+    const int k = slices - 1 - inCascade;
+    std::size_t band = layout_.bands.size() - 1;
+    while (k < layout_.bands[band].firstSlice) --band;
+    gpu::Program& up = *upOfBand_[band];
+    const float voxelM = 2.0f * halfM / kSide;
+    const float height = heightOf(k), above = k + 1 < slices ? heightOf(k + 1) : height;
+    const float shiftM = (above - height) / layout_.line.z;
     target.attachSlice(1, upward_, layer(k));
     clouds.bind(up);
-    up.bind("uAbove", neighbour_[0]);
+    up.bind("uAbove", neighbour);
+    up.set("uHalfM", halfM);
     up.set("uHeightM", height);
     up.set("uHeightAboveM", above);
     up.set("uSamples", std::clamp(static_cast<int>(std::ceil(shiftM / voxelM)), 2, kMostSamples));
     triangle_.draw(up, target);
-    std::swap(neighbour_[0], neighbour_[1]);
+    return;
   }
-
+  const int k = inCascade - slices, below = std::max(k - 1, 0);
+  const auto texelW = [&](int slice) {
+    return (static_cast<float>(layer(slice)) + 0.5f) /
+           static_cast<float>(slices * static_cast<int>(layout_.kHalfM.size()));
+  };
+  target.attachSlice(1, volumes_[1 - front_], layer(k));
+  down_.bind("uBelow", neighbour);
+  down_.bind("uUpward", upward_);
   down_.set("uHalfM", halfM);
-  clearNeighbour();
-  for (int k = 0; k < slices; ++k) {
-    const int below = std::max(k - 1, 0);
-    gpu::Framebuffer target(neighbour_[1]);
-    target.attachSlice(1, volume_, layer(k));
-    down_.bind("uBelow", neighbour_[0]);
-    down_.bind("uUpward", upward_);
-    down_.set("uHeightM", layout.heightsM[static_cast<std::size_t>(k)]);
-    down_.set("uHeightBelowM", layout.heightsM[static_cast<std::size_t>(below)]);
-    down_.set("uSliceW", texelW(k));
-    down_.set("uSliceBelowW", texelW(below));
-    triangle_.draw(down_, target);
-    std::swap(neighbour_[0], neighbour_[1]);
-  }
+  down_.set("uHeightM", heightOf(k));
+  down_.set("uHeightBelowM", heightOf(below));
+  down_.set("uSliceW", texelW(k));
+  down_.set("uSliceBelowW", texelW(below));
+  triangle_.draw(down_, target);
 }
 
 }  // namespace welkin::render

@@ -4,7 +4,11 @@
 // the bottom up, each from its neighbour.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "welkin/gpu/draw.h"
+#include "welkin/gpu/framebuffer.h"
 #include "welkin/gpu/program.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/cloud_textures.h"
@@ -21,17 +25,35 @@ class LightVolumePass {
   void draw(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
             const CloudTextures& clouds);
 
-  const gpu::Texture3D& volume() const { return volume_; }
+  // The same a few slices at a time, for frame loops: begin(), then advance() until it returns true. Until
+  // then volume() is what was swept before. clouds: the layers, shading::cloudUniforms() or what has changed
+  // of them. After the first volume of a layout nothing is compiled or allocated.
+  void begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout);
+  bool advance(int parts, const CloudTextures& clouds);  // about `parts` of kParts
+  bool inProgress() const { return step_ < steps(); }
+  static constexpr int kParts = 256;
+
+  const gpu::Texture3D& volume() const { return volumes_[front_]; }
 
  private:
-  void sweepCascade(const shading::LightVolumeLayout& layout, int cascade, const CloudTextures& clouds);
+  int steps() const;
+  void sweepStep(int step, const CloudTextures& clouds);
+  float cost(int step) const;
 
   gpu::FullscreenTriangle triangle_;
   ProgramVariants up_{"pass/light_volume_up.frag"};
+  std::vector<gpu::Program*> upOfBand_;
   gpu::Program down_;
-  gpu::Texture2D neighbour_[2];  // the last slice swept, and the next
-  gpu::Texture3D upward_;        // what the first sweep found
-  gpu::Texture3D volume_;
+  // The last slice swept, and the next.
+  std::array<gpu::Texture2D, 2> neighbours_;
+  std::array<gpu::Framebuffer, 2> targets_;
+  int last_ = 0;
+  gpu::Texture3D upward_;  // what the first sweep found
+  std::array<gpu::Texture3D, 2> volumes_;
+  std::size_t front_ = 0;
+  shading::LightVolumeLayout layout_;  // being swept
+  int step_ = 0;
+  float credit_ = 0.0f;  // of steps, not yet used
 };
 
 }  // namespace welkin::render

@@ -10,6 +10,7 @@
 #include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
@@ -30,11 +31,21 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
-gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox = false) {
+// volumes: with their shadows on the ground.
+gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox, bool volumes) {
   shading::ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", ""},
                                  {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}};
   if (overSkyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  if (volumes) defines.emplace_back("WELKIN_VOLUMES", "1");
   return fullscreenProgram("pass/backdrop.frag", defines);
+}
+
+using Backdrops = std::array<gpu::Program, 3>;
+Backdrops backdropPrograms(bool volumes) {
+  using shading::BackdropKind;
+  return {backdropProgram(BackdropKind::kAll, false, volumes),
+          backdropProgram(BackdropKind::kSky, false, volumes),
+          backdropProgram(BackdropKind::kGround, false, volumes)};
 }
 
 }  // namespace
@@ -43,10 +54,9 @@ struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
   OctavesPass octavesPass;
-  std::array<gpu::Program, 3> backdrops = {backdropProgram(shading::BackdropKind::kAll),
-                                           backdropProgram(shading::BackdropKind::kSky),
-                                           backdropProgram(shading::BackdropKind::kGround)};
-  gpu::Program boxBackdrop;  // once there is a box: in the place of all of them
+  Backdrops thinBackdrops = backdropPrograms(false);
+  Backdrops volumeBackdrops;                 // once there are volumes
+  std::array<gpu::Program, 2> boxBackdrops;  // once there is a box: in the place of all of them
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
@@ -55,15 +65,20 @@ struct LiveSky::Impl {
   std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
   std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
+  std::optional<LiveVolumes> volumes;   // once there are any
+  bool marched = false;                 // the state has volumes
+  std::vector<shading::VolumeInSky> volumesInSky;
 
   // Kept for their memory.
   std::vector<shading::SheetInSky> inSky;
   shading::LightUnderSheets underSheets;
   shading::Uniforms skyUniforms;
 
+  Backdrops& backdrops() { return marched ? volumeBackdrops : thinBackdrops; }
+  gpu::Program& boxBackdrop() { return boxBackdrops[marched ? 1 : 0]; }
   void change(const scene::SkyState& next);
   void refresh();
-  void updateBox(const scene::SkyBox& wanted);
+  void updateBox(const scene::SkyBox& wanted, bool withVolumes);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
@@ -108,22 +123,27 @@ void LiveSky::update(const scene::SkyState& state) {
 
 void LiveSky::Impl::change(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
-  if (!same) updateBox(next.scene.skyBox);  // first, as its files may be missing
+  const bool volumesThere = std::ranges::any_of(
+      next.weather.layers, [&](const weather::Layer& layer) { return !scene::isSheet(next.scene, layer); });
+  if (!same) updateBox(next.scene.skyBox, volumesThere);  // first, as its files may be missing
   state = next;
-  if (!same) {
-    sheets.clear();
-    scene::Scene thin = state->scene;
-    for (const weather::Layer& layer : state->weather.layers)
-      if (scene::techniqueOf(thin, layer) == scene::Technique::kVolume)
-        throw ParameterError(
-            "a live sky draws thin sheets; expected technique plane, skyplane, dome, octaves or auto");
-    if (thin.technique == scene::Technique::kAuto) thin.technique = scene::Technique::kSkyPlane;
-    sheets = makeThinLayers(thin, state->weather, state->clouds->earthRadiusM());
-    for (const ThinLayer& sheet : sheets)
-      if (sheet.living) octavesPass.prepare(*sheet.living);
-    if (!clouds || clouds->noise() != state->clouds->sharedNoise())
-      clouds.emplace(state->clouds->sharedNoise());
-  }
+  if (same) return;
+  marched = volumesThere;
+  volumesInSky.clear();
+  sheets.clear();
+  sheets = makeThinLayers(state->scene, state->weather, state->clouds->earthRadiusM());
+  for (const ThinLayer& sheet : sheets)
+    if (sheet.living) octavesPass.prepare(*sheet.living);
+  if (!clouds || clouds->noise() != state->clouds->sharedNoise())
+    clouds.emplace(state->clouds->sharedNoise());
+  if (!marched) return;
+  if (volumeBackdrops[0].id() == 0) volumeBackdrops = backdropPrograms(true);
+  volumesInSky = shading::volumesIn(*state);
+  if (!volumes) volumes.emplace();
+  volumes->change(*state, sheets);
+  const shading::Uniforms light = volumes->lightUniforms();
+  for (gpu::Program& p : volumeBackdrops) setUniforms(p, light);
+  if (box) setUniforms(boxBackdrop(), light);
 }
 
 // Everything to the state's instant.
@@ -136,23 +156,26 @@ void LiveSky::Impl::refresh() {
   tables.updateLive(*state);
   shading::skyUniforms(*state, skyUniforms);
   sheetPass.setSky(skyUniforms);
-  for (gpu::Program& p : backdrops) setUniforms(p, skyUniforms);
-  if (box) setUniforms(boxBackdrop, skyUniforms);
+  for (gpu::Program& p : backdrops()) setUniforms(p, skyUniforms);
+  if (box) setUniforms(boxBackdrop(), skyUniforms);
+  if (marched) volumes->update(skyUniforms);
 }
 
-void LiveSky::Impl::updateBox(const scene::SkyBox& wanted) {
-  if (box && box->box() == wanted) return;
-  box.reset();
-  if (wanted.empty()) return;
-  box.emplace(wanted);
-  if (boxBackdrop.id() == 0) boxBackdrop = backdropProgram(shading::BackdropKind::kAll, true);
+void LiveSky::Impl::updateBox(const scene::SkyBox& wanted, bool withVolumes) {
+  if (!box || box->box() != wanted) {
+    box.reset();
+    if (!wanted.empty()) box.emplace(wanted);
+  }
+  gpu::Program& p = boxBackdrops[withVolumes ? 1 : 0];
+  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, true, withVolumes);
 }
 
-// The state's ambient light is for layers of the weather as volumes; here are other sheets, and thinner.
+// The state's ambient light knows of its volumes; here are sheets beside them.
 void LiveSky::Impl::updateAmbient() {
+  if (marched && sheets.empty()) return;
   inSky.clear();
   for (const ThinLayer& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
-  shading::lightUnder(*state, inSky, {}, underSheets);
+  shading::lightUnder(*state, inSky, volumesInSky, underSheets);
   state->ambient = underSheets.ambient;
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     sheets[i].light = underSheets.sheets[i];
@@ -162,9 +185,9 @@ void LiveSky::Impl::updateAmbient() {
 
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
   if (box) {
-    setBackdrop(boxBackdrop, view, target, scale);
-    box->bind(boxBackdrop);
-    triangle.draw(boxBackdrop, target);
+    setBackdrop(boxBackdrop(), view, target, scale);
+    box->bind(boxBackdrop());
+    triangle.draw(boxBackdrop(), target);
     return;
   }
   const sky::Body &sun = state->ephemeris.sun, &moon = state->ephemeris.moon;
@@ -173,14 +196,15 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
       {shading::BackdropDisc{glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad)},
        shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
       state->scene.output.sunDisc);
-  for (std::size_t kind = 0; kind < backdrops.size(); ++kind) {
+  Backdrops& programs = backdrops();
+  for (std::size_t kind = 0; kind < programs.size(); ++kind) {
     bool set = false;
     for (int i = 0; i < tiles.count; ++i) {
       const shading::BackdropTile& t = tiles.tiles[static_cast<std::size_t>(i)];
       if (static_cast<std::size_t>(t.kind) != kind) continue;
-      if (!set) setBackdrop(backdrops[kind], view, target, scale);
+      if (!set) setBackdrop(programs[kind], view, target, scale);
       set = true;
-      triangle.draw(backdrops[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
+      triangle.draw(programs[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
     }
   }
 }
@@ -207,6 +231,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
     p.bind(kShadowPatterns[shadows], sheet.flat);
     ++shadows;
   }
+  if (marched) volumes->setLight(p, *state, view);
   p.set("uShadowMean", others);
   p.set("uShadowCount", static_cast<int>(shadows));
 }
@@ -237,7 +262,15 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
   Impl& m = *impl_;
   const gpu::StateGuard guard;
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);
+  if (m.marched)
+    m.volumes->march(options.view, *m.state, m.sheets, *m.clouds, m.tables, parts, target.area.width,
+                     target.area.height);
   if (options.backdrop) m.drawBackdrop(parts, target, options.scale);
+  if (m.marched) {
+    m.volumes->show(options.view, target, options.scale);
+    if (options.flare > 0.0f) m.drawFlare(parts, target, options);
+    return;
+  }
   // Far to near: down to the eye from above, and up to it from below.
   const auto nearest = std::find_if(m.sheets.begin(), m.sheets.end(),
                                     [&](const ThinLayer& s) { return s.sheet.heightM > parts.eyeM.z; });

@@ -27,6 +27,7 @@ struct LiveOptions {
   bool backdrop = true;  // clear sky, discs of sun and moon, ground; else only the clouds, over what is there
   float flare = 0.0f;    // share of the sun's light that a lens scatters into a glow and ghosts; 0: none
   EngineDepth depth{};   // of what hides the sun from the flare
+  unsigned view = 0;     // number of the view, where several are drawn in a frame: volumes remember each
 };
 
 class LiveSky {

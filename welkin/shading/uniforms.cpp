@@ -57,6 +57,19 @@ Uniforms cloudUniforms(const scene::SkyState& state) {
   return u;
 }
 
+void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms& uniforms) {
+  static constexpr const char* kOwners[] = {"uLayers[0].", "uLayers[1].", "uLayers[2].", "uLayers[3].",
+                                            "uLayers[4].", "uLayers[5].", "uLayers[6].", "uLayers[7]."};
+  static_assert(std::size(kOwners) == field::kMaxLayers);
+  Refill u(uniforms);
+  const auto layers = state.clouds->layers();
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    field::CloudLayer layer = layers[i];
+    layer.driftM = glm::vec2(glm::dvec2(layer.driftM) - eyeM);
+    field::forEachMember(layer, [&](const char* name, auto value) { u.put(kOwners[i], name, value); });
+  }
+}
+
 Uniforms skyUniforms(const scene::SkyState& state) {
   Uniforms u;
   skyUniforms(state, u);
@@ -213,13 +226,17 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
       layout.heightsM.push_back(band.baseM +
                                 (band.topM - band.baseM) * static_cast<float>(k) / static_cast<float>(n - 1));
   }
+  aimLightVolume(state, layout);
+  return layout;
+}
+
+void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout) {
   // Nearer to level than two degrees the line would leave the volume before it has crossed a layer.
   const glm::vec3 d = state.lights[0].direction;
   layout.towardsSun = d.z >= 0.0f;
   glm::vec3 line = layout.towardsSun ? d : -d;
   line.z = std::max(line.z, 0.035f);
   layout.line = glm::normalize(line);
-  return layout;
 }
 
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {

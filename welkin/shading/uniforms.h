@@ -25,6 +25,9 @@ using Uniforms = std::vector<std::pair<std::string, UniformValue>>;
 
 // lib/cloud_uniforms.glsl: layers and the earth.
 Uniforms cloudUniforms(const scene::SkyState& state);
+// Of these the layers alone, as they lie about an eye east and north of the place, into a list that was
+// filled before: allocates nothing.
+void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms& uniforms);
 
 // lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
 Uniforms skyUniforms(const scene::SkyState& state);
@@ -60,6 +63,8 @@ struct LightVolumeLayout {
     float baseM, topM;
     int firstSlice, lastSlice;
     std::vector<int> layers;  // that lie in it, by their indices in the field
+
+    bool operator==(const Band&) const = default;
   };
   static constexpr int kColumns = 160;  // a side, of each cascade
   static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
@@ -70,6 +75,8 @@ struct LightVolumeLayout {
   bool towardsSun = true;       // or away from it
 };
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
+// Sets of it what changes with the instant: the line.
+void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
 
 // What is compiled into programs (lib/cloud_uniforms.glsl): the layers of all bands, and the order in which a

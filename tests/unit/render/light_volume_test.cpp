@@ -166,5 +166,26 @@ TEST(LightVolume, DepthsUpAndDownAddUp) {
     }
 }
 
+// A few slices at a time, and in the middle of it another instant's: the same volumes.
+TEST(LightVolume, InPartsItIsTheSame) {
+  const scene::Scene scene = cloudyScene(30.0, {Genus::kCumulus, Genus::kAltocumulus});
+  const Swept whole(scene);
+  gpu::Context context({.debug = true});
+  const CloudTextures clouds(whole.state.clouds->sharedNoise());
+  LightVolumePass pass;
+  pass.draw(scene::buildSky(scene, 500.0, &whole.state), whole.layout, clouds);
+  const auto before = pass.volume().read().data;
+  pass.begin(shading::cloudUniforms(whole.state), whole.layout);
+  int frames = 1;
+  for (; !pass.advance(LightVolumePass::kParts / 16, clouds); ++frames) {
+    ASSERT_TRUE(pass.inProgress());
+    EXPECT_EQ(pass.volume().read().data, before);
+  }
+  EXPECT_NEAR(frames, 16, 1);
+  EXPECT_EQ(pass.volume().read().data, whole.texels.data);
+  EXPECT_FALSE(pass.inProgress());
+  for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
+}
+
 }  // namespace
 }  // namespace welkin::render

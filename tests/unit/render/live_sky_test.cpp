@@ -12,6 +12,7 @@
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/gpu/context.h"
+#include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
 
 namespace {
@@ -205,6 +206,47 @@ TEST_F(LiveSkyTest, ComposingOctavesAllocatesNothing) {
     for (int i = 1; i < 50; ++i) pass.compose(living, 40.0 * i, pattern);
     EXPECT_EQ(gAllocations - before, 0);
   }
+}
+
+// A sky with volumes, and a sheet among them.
+scene::Scene marchedScene() {
+  scene::Scene s = cloudyScene(35.0, {Genus::kCumulus, Genus::kCirrus});
+  s.layers[1].technique = scene::Technique::kSkyPlane;
+  s.output.width = 64;
+  s.output.height = 36;
+  return s;
+}
+
+TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAfterAMarch) {
+  LiveSky sky;
+  const ForeignEngine engine;
+  const auto before = engine.state();
+  sky.update(marchedScene(), 0.0);
+  EXPECT_EQ(engine.state(), before);
+  for (int i = 0; i < 3; ++i) {
+    sky.draw(shading::viewOf(sky.state()), gpu::Target(engine.framebuffer(), {0, 0, 16, 8}),
+             {.scale = 1e-4f, .flare = 0.01f});
+    EXPECT_EQ(engine.state(), before);
+    sky.update(marchedScene(), i + 1.0);
+    EXPECT_EQ(engine.state(), before);
+  }
+}
+
+// Time runs, the eye turns and flies; the light volume is swept twice.
+TEST_F(LiveSkyTest, MarchedFramesAllocateNothing) {
+  LiveSky sky;
+  const scene::Scene s = marchedScene();
+  shading::View view = shading::viewOf(scene::buildSky(s, 0.0));
+  const auto frame = [&](int i) {
+    sky.update(s, 0.25 * i);
+    view.view[3].x += 20.0;
+    view.view[3].y -= 10.0;
+    sky.draw(view, target, {.scale = 1e-4f});
+  };
+  for (int i = 0; i < 3; ++i) frame(i);
+  const long before = gAllocations;
+  for (int i = 3; i < 3 + 2 * LiveVolumes::kFramesOfSweep; ++i) frame(i);
+  EXPECT_EQ(gAllocations - before, 0);
 }
 
 // Only the clouds, over what an engine has drawn.

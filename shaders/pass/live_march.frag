@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame's share of a marched sky: one pixel of each block of uBlock x uBlock, drawn to a target so much smaller. Clouds alone, volumes
+// and the thin layers among them, for any OpenGL camera; what lies behind is drawn elsewhere and shines through.
+
+#include "lib/phase.glsl"
+#include "lib/atmosphere.glsl"
+#include "lib/sky_uniforms.glsl"
+#include "lib/cloud_uniforms.glsl"
+#include "lib/cloud_light.glsl"
+#include "lib/light_volume.glsl"
+#ifdef WELKIN_SHEETS
+#include "lib/sheet.glsl"
+#include "lib/sheet_surface.glsl"
+#include "lib/sheet_light.glsl"
+#include "lib/sheet_ray.glsl"
+#include "lib/sheet_shadows.glsl"
+#endif
+#include "lib/march.glsl"
+
+float groundSunlight(vec2 q) { return 1.0; }  // of no ground
+
+#include "lib/background.glsl"
+
+uniform mat3 uEnuFromCamera;      // OpenGL's camera: x right, y up, z backwards
+uniform vec4 uRayScale;           // from clip x, y: xy * clip + zw is the camera ray at depth 1
+uniform vec2 uSizePx;             // of the whole picture
+uniform float uPixelRad;
+uniform float uBlock;
+uniform vec2 uCellPx;             // of this frame within the blocks, with the jitter within the pixel
+uniform vec2 uJitterStep;         // along the ray and towards the sun, [0, 1)
+
+layout(location = 0) out vec4 outCloud;   // luminance that arrives, air and all; w: the share of what is behind that arrives too
+layout(location = 1) out vec4 outDepth;   // x: distance of what is seen, m; 0: nothing is
+
+// Interleaved gradient noise (J. Jimenez 2014): neighbours differ as much as they can.
+float interleavedNoise(vec2 px) { return fract(52.9829189 * fract(dot(px, vec2(0.06711056, 0.00583715)))); }
+
+void main() {
+  vec2 block = floor(gl_FragCoord.xy);
+  vec2 px = uBlock * block + uCellPx;
+  vec2 clip = px / uSizePx * 2.0 - 1.0;
+  vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
+  vec2 at = floor(px);
+  vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
+  CloudRay ray = marchClouds(dir, groundDistance(dir), uPixelRad, dither);
+  vec3 color = vec3(0.0);
+  float depthM = ray.depthM;
+#ifdef WELKIN_SHEETS
+  color += ray.sheets;
+  float hidden = ray.hidden;
+  if (hidden <= 0.0001 && ray.transmittance < 1.0) depthM = max(sphereCrossings(uSheets[0].heightM, dir.z).y, 0.0);
+#else
+  float hidden = 1.0 - ray.transmittance;
+#endif
+  if (hidden > 0.0001) {
+    vec3 inscatter, through;
+    aerial(dir, ray.depthM, inscatter, through);
+    color += ray.luminance * through + inscatter * hidden;
+  }
+  outCloud = vec4(color, ray.transmittance);
+  outDepth = vec4(depthM, 0.0, 0.0, 1.0);
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The marched sky of a frame from that of the last and what has been marched since, one pixel of each block.
+//
+// While neither eye nor time moves, pixels are means of their samples, whose weights grow from round to round (uStillWeight), so that what
+// was there before they stood still is soon forgotten. In motion each pixel looks where its cloud was in the last frame, as eye and wind have
+// moved, and what it finds is held within what the new samples around it span (variance clipping: M. Salvi 2016, "An Excursion in
+// Temporal Supersampling"), so that nothing stays where it no longer belongs.
+
+#include "lib/cloud_layer.glsl"
+#include "lib/clouds.glsl"
+
+uniform sampler2D uFresh;         // pass/live_march
+uniform sampler2D uFreshDepth;
+uniform sampler2D uHistory;       // luminance and transmittance
+uniform sampler2D uCount;         // samples that a pixel of it is the mean of
+uniform int uBlock;
+uniform ivec2 uCell;              // of the fresh samples in their blocks
+uniform int uHasHistory;
+uniform int uStill;               // neither eye nor time has moved
+uniform float uStillWeight;       // then of a fresh sample
+uniform float uMostCount;         // samples that a pixel in motion remembers
+uniform float uSpread;            // standard deviations to both sides
+
+uniform mat3 uEnuFromCamera;
+uniform vec4 uRayScale;
+uniform mat4 uLastClipFromEnu;    // positions from the last eye to the last picture
+uniform vec3 uEyeMoveM;           // since then
+uniform float uEyeM;
+uniform float uEarthRadiusM;
+uniform vec4 uBands[8];           // base, top
+uniform int uBandCount;
+uniform vec4 uBandMoveM[8];       // xy: with the wind since then
+
+layout(location = 0) out vec4 outHistory;
+layout(location = 1) out vec4 outCount;
+
+// Catmull and Rom's cubic in nine fetches (J. Jimenez 2016, "Filmic SMAA"): bilinear filtering frame after frame would blur.
+vec4 sharpHistory(vec2 uv) {
+  vec2 size = vec2(textureSize(uHistory, 0));
+  vec2 at = uv * size - 0.5;
+  vec2 f = fract(at);
+  vec2 centre = (floor(at) + 0.5) / size;
+  vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
+  vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
+  vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
+  vec2 w3 = f * f * (-0.5 + 0.5 * f);
+  vec2 w12 = w1 + w2;
+  vec2 p0 = centre - 1.0 / size, p3 = centre + 2.0 / size, p12 = centre + w2 / w12 / size;
+  return (textureLod(uHistory, vec2(p0.x, p0.y), 0.0) * w0.x + textureLod(uHistory, vec2(p12.x, p0.y), 0.0) * w12.x +
+          textureLod(uHistory, vec2(p3.x, p0.y), 0.0) * w3.x) * w0.y +
+         (textureLod(uHistory, vec2(p0.x, p12.y), 0.0) * w0.x + textureLod(uHistory, p12, 0.0) * w12.x +
+          textureLod(uHistory, vec2(p3.x, p12.y), 0.0) * w3.x) * w12.y +
+         (textureLod(uHistory, vec2(p0.x, p3.y), 0.0) * w0.x + textureLod(uHistory, vec2(p12.x, p3.y), 0.0) * w12.x +
+          textureLod(uHistory, vec2(p3.x, p3.y), 0.0) * w3.x) * w3.y;
+}
+
+void main() {
+  ivec2 px = ivec2(gl_FragCoord.xy);
+  ivec2 block = px / uBlock;
+  bool isFresh = px - block * uBlock == uCell;
+  vec4 fresh = texelFetch(uFresh, block, 0);
+  vec4 history;
+  float count;
+  if (uStill != 0) {
+    history = texelFetch(uHistory, px, 0);
+    count = texelFetch(uCount, px, 0).x;
+    if (isFresh) {
+      history = count < 0.5 ? fresh : mix(history, fresh, uStillWeight);
+      count += 1.0;
+    }
+  } else {
+    ivec2 last = textureSize(uFresh, 0) - 1;
+    vec4 mean = vec4(0.0), square = vec4(0.0);
+    float depthM = 1e9;
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        ivec2 at = clamp(block + ivec2(x, y), ivec2(0), last);
+        vec4 sampled = texelFetch(uFresh, at, 0);
+        mean += sampled;
+        square += sampled * sampled;
+        float there = texelFetch(uFreshDepth, at, 0).x;
+        if (there > 0.0) depthM = min(depthM, there);
+      }
+    mean /= 9.0;
+    vec4 spread = uSpread * sqrt(max(square / 9.0 - mean * mean, 0.0));
+    vec2 uvFresh = ((vec2(px) - vec2(uCell)) / float(uBlock) + 0.5) / vec2(textureSize(uFresh, 0));
+    vec4 around = textureLod(uFresh, uvFresh, 0.0);
+    count = 0.0;
+    history = around;
+    if (uHasHistory != 0) {
+      vec2 size = vec2(textureSize(uHistory, 0));
+      vec2 clip = (vec2(px) + 0.5) / size * 2.0 - 1.0;
+      vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
+      vec3 moved = vec3(0.0);
+      if (depthM < 1e8) {
+        float height = heightAboveGround(vec3(0.0, 0.0, uEyeM) + dir * depthM, uEarthRadiusM);
+        for (int i = 0; i < uBandCount; ++i)
+          if (i == 0 || height >= uBands[i].x) moved = vec3(vec2(uBandMoveM[i]), 0.0);
+      }
+      vec4 was = uLastClipFromEnu * vec4(dir * min(depthM, 1e6) - moved + uEyeMoveM, 1.0);
+      vec2 uv = was.w > 0.0 ? was.xy / was.w * 0.5 + 0.5 : vec2(-1.0);
+      if (all(greaterThanEqual(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)))) {
+        count = texelFetch(uCount, ivec2(uv * size), 0).x;
+        if (count > 0.5) history = clamp(sharpHistory(uv), mean - spread, mean + spread);
+        count = min(count, uMostCount);
+      }
+    }
+    if (isFresh) {
+      history = count < 0.5 ? fresh : mix(history, fresh, 1.0 / (count + 1.0));
+      count += 1.0;
+    }
+    history = vec4(max(vec3(history), 0.0), clamp(history.w, 0.0, 1.0));
+  }
+  outHistory = history;
+  outCount = vec4(count, 0.0, 0.0, 1.0);
+}

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Marched clouds in somebody's frame loop, against the still.
+#include "welkin/render/live_volumes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/testing/foreign_engine.h"
+#include "tests/testing/pictures.h"
+#include "tests/testing/skies.h"
+#include "welkin/gpu/context.h"
+#include "welkin/render/live_sky.h"
+#include "welkin/render/sky_renderer.h"
+
+namespace welkin::render {
+namespace {
+
+using namespace welkin::testing;
+using weather::Genus;
+
+constexpr int kWidth = 96, kHeight = 54, kRound = LiveVolumes::kFramesInRound;
+
+// Mean of the differences of luminance, relative to both.
+double apart(const Image<float>& a, const Image<float>& b) {
+  double sum = 0.0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const double p = luminanceOf(pixel(a, x, y)), q = luminanceOf(pixel(b, x, y));
+      sum += 2.0 * std::abs(p - q) / (p + q);
+    }
+  return sum / (a.width * a.height);
+}
+
+class LiveVolumesTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    context.makeCurrent();
+    for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
+  }
+
+  static scene::Scene cumulus() {
+    return looking(sized(cloudyScene(40.0, {Genus::kCumulus}), kWidth, kHeight), 200.0, 14.0);
+  }
+  Image<float> still(const scene::Scene& s, double seconds = 0.0) {
+    Image<float> picture = SkyRenderer().draw(scene::buildSky(s, seconds)).luminance;
+    context.makeCurrent();
+    return picture;
+  }
+  static shading::View viewOf(const scene::Scene& s) { return shading::viewOf(scene::buildSky(s, 0.0)); }
+  Image<float> after(LiveSky& sky, const shading::View& view, int frames, unsigned number = 0) {
+    for (int i = 0; i < frames; ++i) sky.draw(view, target, {.view = number});
+    return target.readPicture(0, 3);
+  }
+
+  gpu::Context context{{.debug = true}};
+  gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
+  gpu::Framebuffer target{texture};
+};
+
+// From the ground, in the air over a layer, and through a sheet between volumes.
+TEST_F(LiveVolumesTest, AViewThatStaysConvergesToTheStill) {
+  scene::Scene mixed = cumulus();
+  mixed.layers.push_back(weather::typicalLayer(Genus::kCirrus, kTestLatitudeDeg));
+  mixed.layers.back().technique = scene::Technique::kSkyPlane;
+  std::vector<scene::Scene> scenes = {
+      cumulus(),
+      looking(sized(fromHeight(cloudyScene(30.0, {Genus::kStratocumulus}, 6.0), 3500.0), kWidth, kHeight),
+              90.0, -12.0),
+      mixed};
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    SCOPED_TRACE(i);
+    scenes[i].output.quality = scene::Quality::kHigh;  // for a still with little noise of its own
+    const Image<float> expected = still(scenes[i]);
+    LiveSky sky;
+    sky.update(scenes[i], 0.0);
+    const shading::View view = viewOf(scenes[i]);
+    const double first = apart(after(sky, view, 1), expected);
+    const double round = apart(after(sky, view, kRound - 1), expected);
+    const double last = apart(after(sky, view, 15 * kRound), expected);
+    EXPECT_LT(first, 0.12);
+    EXPECT_LT(round, first);
+    EXPECT_LT(last, round);
+    EXPECT_LT(last, 0.02);
+    EXPECT_EQ(firstBadValue(target.readPicture(0, 3)), -1);
+  }
+}
+
+// After all rounds nothing changes any more, and what was seen before is forgotten.
+TEST_F(LiveVolumesTest, WhatItConvergesToKnowsNoPast) {
+  const scene::Scene s = cumulus();
+  const shading::View view = viewOf(s);
+  constexpr int kAll = (LiveVolumes::kRounds + 2) * kRound;
+  LiveSky direct;
+  direct.update(s, 100.0);
+  const Image<float> expected = after(direct, view, kAll);
+  EXPECT_EQ(after(direct, view, 3).data, expected.data);
+
+  LiveSky walking;
+  walking.update(s, 0.0);
+  after(walking, viewOf(looking(s, 20.0, 30.0)), 20);
+  for (int second = 80; second <= 100; ++second) {
+    walking.update(s, second);
+    after(walking, view, 1);
+  }
+  EXPECT_LT(apart(after(walking, view, kAll), expected), 0.0005);
+}
+
+// After a turn nothing of the other side is left: the picture is about as good as one that began there, from
+// the first frame on, whether the two sides overlap or not.
+TEST_F(LiveVolumesTest, ASuddenTurnLeavesNoGhosts) {
+  const scene::Scene s = cumulus();
+  for (const double headingDeg : {225.0, 290.0}) {
+    SCOPED_TRACE(headingDeg);
+    const scene::Scene other = looking(s, headingDeg, 10.0);
+    const Image<float> expected = still(other);
+    LiveSky beginning, turning;
+    beginning.update(s, 0.0);
+    turning.update(s, 0.0);
+    const double before = apart(after(turning, viewOf(s), 4 * kRound), expected);
+    double all = 0.0, allFresh = 0.0;  // single frames differ, as they march other pixels first
+    for (const int frames : {1, 7, 8, 16}) {
+      const double turned = apart(after(turning, viewOf(other), frames), expected);
+      EXPECT_LT(turned, 0.4 * before) << frames;
+      all += turned;
+      allFresh += apart(after(beginning, viewOf(other), frames), expected);
+    }
+    EXPECT_LT(all, 1.1 * allFresh);
+  }
+}
+
+// A turn as an engine makes it, a quarter of a pixel a frame: the picture stays near the truth all along,
+// nearer than one sample in each block shows it.
+TEST_F(LiveVolumesTest, ASlowTurnKeepsWhatItSaw) {
+  const scene::Scene s = cumulus();
+  LiveSky turning, fresh;
+  turning.update(s, 0.0);
+  fresh.update(s, 0.0);
+  double kept = 0.0, alone = 0.0;
+  for (int i = 0; i <= 48; ++i) {
+    const scene::Scene now = looking(s, 200.0 + 0.18 * i, 14.0);
+    const Image<float> frame = after(turning, viewOf(now), 1);
+    if (i < 16 || i % 16 != 0) continue;
+    // Views never drawn before.
+    const auto number = static_cast<unsigned>(i);
+    const Image<float> first = after(fresh, viewOf(now), 1, number);
+    const Image<float> expected = after(fresh, viewOf(now), 8 * kRound, number);
+    kept += apart(frame, expected);
+    alone += apart(first, expected);
+  }
+  EXPECT_LT(kept, 0.75 * alone);
+}
+
+// While time runs, pictures stay near the still of the instant.
+TEST_F(LiveVolumesTest, RunningTimeIsFollowed) {
+  scene::Scene s = cumulus();
+  s.layers[0].windSpeedMps = 20.0;
+  LiveSky sky;
+  const shading::View view = viewOf(s);
+  for (int i = 0; i <= 100; ++i) {
+    sky.update(s, 0.5 * i);
+    after(sky, view, 1);
+  }
+  const Image<float> frame = target.readPicture(0, 3);
+  const double now = apart(frame, still(s, 50.0)), past = apart(frame, still(s, 30.0));
+  EXPECT_LT(now, 0.08);
+  EXPECT_LT(now, 0.7 * past);
+}
+
+// Each view has a memory of its own.
+TEST_F(LiveVolumesTest, ViewsDoNotDisturbEachOther) {
+  const scene::Scene s = cumulus();
+  const shading::View view = viewOf(s), other = viewOf(looking(s, 20.0, 30.0));
+  LiveSky alone, both;
+  alone.update(s, 0.0);
+  both.update(s, 0.0);
+  for (int i = 0; i < 20; ++i) {
+    after(both, view, 1, 0);
+    after(both, other, 1, 1);
+  }
+  EXPECT_EQ(after(both, view, 1, 0).data, after(alone, view, 21, 0).data);
+}
+
+// The shadows of clouds on the ground are those of the still, though drawn elsewhere.
+TEST_F(LiveVolumesTest, TheGroundIsShaded) {
+  const scene::Scene s = looking(
+      sized(fromHeight(cloudyScene(50.0, {Genus::kCumulus}, 3.0), 400.0), kWidth, kHeight), 90.0, -40.0);
+  scene::Scene clear = s;
+  clear.layers.clear();
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const Image<float> live = after(sky, viewOf(s), 2 * kRound);
+  EXPECT_LT(apart(live, still(s)), 0.02);
+  EXPECT_GT(apart(live, still(clear)), 0.1);
+}
+
+}  // namespace
+}  // namespace welkin::render

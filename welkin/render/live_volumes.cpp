@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/live_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "welkin/field/cloud_field.h"
+#include "welkin/render/programs.h"
+#include "welkin/shading/sheet_mesh.h"
+
+namespace welkin::render {
+namespace {
+
+// Neighbouring frames march pixels far apart in their blocks (B. E. Bayer 1973, "An Optimum Method for
+// Two-Level Rendition of Continuous-Tone Pictures").
+constexpr std::array<glm::ivec2, LiveVolumes::kFramesInRound> kOrder = {
+    glm::ivec2{0, 0}, {2, 2}, {2, 0}, {0, 2}, {1, 1}, {3, 3}, {3, 1}, {1, 3},
+    glm::ivec2{1, 0}, {3, 2}, {3, 0}, {1, 2}, {0, 1}, {2, 3}, {2, 1}, {0, 3}};
+
+// The light volume is centred on points of a grid, so that an eye that moves a little needs no other one.
+constexpr double kCentreGridM = 500.0;
+// Where time or eye leap farther than this, the light volume is swept anew at once.
+constexpr double kLeapS = 60.0, kLeapM = 3000.0;
+
+// The share of a new sample while nothing moves, by rounds since: the mean weighs sample r like r^2, and
+// after all rounds a thousandth of it is what was there before.
+float stillWeight(int round) {
+  return 3.0f / static_cast<float>(round + 6);
+}
+
+constexpr float kMostCount =
+    1.0f;  // samples that a pixel in motion remembers: more would be resampled to a blur
+constexpr float kSpread = 2.0f;  // of variance clipping, standard deviations
+
+// Evenly over [0, 1) from the first number on: M. Roberts 2018, as in stills.
+float part(double a, int i) {
+  return static_cast<float>(std::fmod(0.5 + a * i, 1.0));
+}
+glm::vec2 jitterPx(int round) {
+  return glm::vec2(part(0.7548776662466927, round), part(0.5698402909980532, round)) - 0.5f;
+}
+glm::vec2 jitterStep(int round) {
+  return {part(0.6180339887498949, round), part(0.7548776662466927, round + 7)};
+}
+
+constexpr gpu::TextureOptions kColour{.format = gpu::Format::kRgba32F},
+    kNumber{.format = gpu::Format::kR32F, .filter = gpu::Filter::kNearest};
+
+bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
+  return a.eyeM == b.eyeM && a.enuFromCamera == b.enuFromCamera && a.clipFromEnu == b.clipFromEnu &&
+         a.rayScale == b.rayScale;
+}
+
+}  // namespace
+
+LiveVolumes::LiveVolumes()
+    : resolve_(fullscreenProgram("pass/live_resolve.frag")),
+      show_(fullscreenProgram("pass/live_show.frag")) {}
+
+void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLayer>& sheets) {
+  layout_ = shading::lightVolumeLayout(state);
+  light_.reset();
+  sweeping_.reset();
+  for (auto& memory : memories_) memory.reset();
+  const std::size_t count = sheets.size(), bands = layout_.bands.size();
+  bandMoves_.assign(bands, glm::vec4(0.0f));
+  bandSky_.assign(field::kMaxLayers, glm::vec4(1.0f));
+  shapes_.resize(count), rays_.resize(count), skies_.resize(count), sunSteps_.resize(count);
+  patternNames_.clear(), sheetNames_.clear(), inSky_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    patternNames_.push_back("uSheetPattern" + std::to_string(i));
+    sheetNames_.push_back(sheetUniformNames("uSheets[" + std::to_string(i) + "]"));
+    inSky_.push_back({sheets[i].sheet.heightM, &sheets[i].matter});
+  }
+
+  // The order of an eye above all clouds has that of every other eye in it: what lies behind the eye is not
+  // met.
+  constexpr double kAboveAll = 1e6;
+  shading::Uniforms order;
+  if (count == 0) {
+    marching_ = &marches_.with(shading::marchDefines(layout_, kAboveAll));
+  } else {
+    std::vector<shading::SheetOnRay> onRay;
+    for (const ThinLayer& sheet : sheets) {
+      shading::SheetLook look;
+      look.heightM = static_cast<float>(sheet.sheet.heightM);
+      onRay.push_back({sheet.sheet.surface,
+                       sheet.sheet.tier,
+                       look,
+                       shading::shapeOf(sheet.sheet, state.clouds->earthRadiusM(), 0.0),
+                       {},
+                       1.0f});
+    }
+    marching_ = &marches_.with(shading::sheetDefines(layout_, onRay, kAboveAll));
+    order = shading::sheetUniforms(layout_, onRay, {}, kAboveAll);
+  }
+  gpu::Program& p = *marching_;
+  const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
+  reach_ = 1.0f / (3.0f * (layout_.bands.empty() ? 1e-4f : settings.noise));
+  setUniforms(p, order);
+  setUniforms(p, shading::cloudUniforms(state));
+  setUniforms(p, shading::marchUniforms(settings));
+  const shading::Uniforms volume = shading::lightVolumeUniforms(layout_);
+  setUniforms(p, volume);
+  setUniforms(resolve_, volume);
+}
+
+void LiveVolumes::update(const shading::Uniforms& skyUniforms) {
+  setUniforms(*marching_, skyUniforms);
+}
+
+LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t bands) {
+  Memory m;
+  const int w = (width + kBlock - 1) / kBlock, h = (height + kBlock - 1) / kBlock;
+  m.fresh = gpu::Texture2D(w, h, kColour);
+  m.freshDepth = gpu::Texture2D(w, h, kNumber);
+  m.march.attach(0, m.fresh);
+  m.march.attach(1, m.freshDepth);
+  for (std::size_t i = 0; i < 2; ++i) {
+    m.history[i] = gpu::Texture2D(width, height, kColour);
+    m.count[i] = gpu::Texture2D(width, height, kNumber);
+    m.resolved[i].attach(0, m.history[i]);
+    m.resolved[i].attach(1, m.count[i]);
+  }
+  m.driftM.resize(bands);
+  return m;
+}
+
+glm::vec2 LiveVolumes::driftOfBand(const scene::SkyState& state, std::size_t band) const {
+  if (layout_.bands.empty()) return glm::vec2(0.0f);
+  const int layer = layout_.bands[band].layers.front();
+  return state.clouds->layers()[static_cast<std::size_t>(layer)].driftM;
+}
+
+glm::vec2 LiveVolumes::lightShiftM(const scene::SkyState& state, const shading::ViewParts& parts) const {
+  return glm::vec2(glm::dvec2(parts.eyeM) - light_->centreM) - (driftOfBand(state, 0) - light_->driftM);
+}
+
+void LiveVolumes::keepLight(const scene::SkyState& state, const CloudTextures& clouds,
+                            const shading::ViewParts& parts) {
+  shading::aimLightVolume(state, layout_);
+  const glm::dvec2 eyeM(parts.eyeM);
+  const Swept wanted{state.secondsAfter,    glm::round(eyeM / kCentreGridM) * kCentreGridM,
+                     driftOfBand(state, 0), state.litBySun,
+                     layout_.line,          layout_.towardsSun};
+  const auto leaps = [&](const Swept& s) {
+    return s.bySun != wanted.bySun || std::abs(s.seconds - wanted.seconds) > kLeapS ||
+           glm::distance(s.centreM, eyeM) > kLeapM;
+  };
+  const bool atOnce = !light_ || leaps(*light_);
+  if (atOnce) sweeping_.reset();
+  if (!sweeping_) {
+    if (light_ == wanted) return;
+    shading::cloudLayerUniforms(state, wanted.centreM, layers_);
+    lightVolume_.begin(layers_, layout_);
+    sweeping_ = wanted;
+  }
+  constexpr int kParts = LightVolumePass::kParts;
+  if (!lightVolume_.advance(atOnce ? kParts : kParts / kFramesOfSweep, clouds) && lightVolume_.inProgress())
+    return;
+  light_ = sweeping_;
+  sweeping_.reset();
+  ++lightNumber_;
+}
+
+void LiveVolumes::setLight(gpu::Program& p, const scene::SkyState& state,
+                           const shading::ViewParts& parts) const {
+  p.set("uLightShiftM", lightShiftM(state, parts));
+  p.set("uLine", light_->line);
+  p.set("uLineTowardsSun", light_->towardsSun ? 1.0f : 0.0f);
+  p.bind("uLightVolume", lightVolume_.volume());
+}
+
+void LiveVolumes::setSheets(const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
+                            const shading::ViewParts& parts) {
+  gpu::Program& p = *marching_;
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    const ThinLayer& sheet = sheets[i];
+    const shading::SheetLook look = shading::lookOf(sheet.sheet, sheet.matter, state.secondsAfter, parts.eyeM,
+                                                    state.lights[0].direction, 1.0f);
+    const shading::SheetShape shape =
+        shading::shapeOf(sheet.sheet, state.clouds->earthRadiusM(), parts.eyeM.z);
+    shapes_[i] = shape.shape;
+    rays_[i] = {shape.innerM, look.texelsPerPixel, sheet.light.sun, sheet.sunThrough};
+    skies_[i] = glm::vec4(sheet.light.sky, static_cast<float>(sheet.sheet.tier));
+    sunSteps_[i] = glm::vec4(look.sunStep, 0.0f);
+    setSheet(p, sheetNames_[i], look);
+    p.bind(patternNames_[i], sheet.pattern());
+  }
+  for (std::size_t b = 0; b < layout_.bands.size(); ++b)
+    bandSky_[b] = shading::lightShareUnder(
+        state, inSky_, 0.5 * static_cast<double>(layout_.bands[b].baseM + layout_.bands[b].topM));
+  p.set("uSheetShape", shapes_);
+  p.set("uSheetRay", rays_);
+  p.set("uSheetSky", skies_);
+  p.set("uSheetSunStep", sunSteps_);
+  p.set("uBandSky", bandSky_);
+}
+
+void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,
+                           const std::vector<ThinLayer>& sheets, const shading::ViewParts& parts, int width,
+                           int height) {
+  gpu::Program& p = *marching_;
+  shading::cloudLayerUniforms(state, glm::dvec2(parts.eyeM), layers_);
+  setUniforms(p, layers_);
+  setSheets(state, sheets, parts);
+  setLight(p, state, parts);
+  const int round = m.frame / kFramesInRound;
+  const glm::ivec2 cell = kOrder[static_cast<std::size_t>(m.frame % kFramesInRound)];
+  p.set("uEyeM", static_cast<float>(parts.eyeM.z));
+  p.set("uEnuFromCamera", parts.enuFromCamera);
+  p.set("uRayScale", parts.rayScale);
+  p.set("uSizePx", glm::vec2(width, height));
+  p.set("uPixelRad", parts.pixelRad);
+  p.set("uBlock", static_cast<float>(kBlock));
+  p.set("uCellPx", glm::vec2(cell) + 0.5f + jitterPx(round));
+  p.set("uJitterStep", jitterStep(round));
+}
+
+void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading::ViewParts& parts,
+                          bool still) {
+  gpu::Program& p = resolve_;
+  for (std::size_t b = 0; b < bandMoves_.size(); ++b) {
+    const glm::vec2 driftM = driftOfBand(state, b);
+    bandMoves_[b] = glm::vec4(driftM - m.driftM[b], 0.0f, 0.0f);
+    m.driftM[b] = driftM;
+  }
+  p.set("uBandMoveM", bandMoves_);
+  p.set("uBlock", kBlock);
+  p.set("uCell", kOrder[static_cast<std::size_t>(m.frame % kFramesInRound)]);
+  p.set("uHasHistory", m.any ? 1 : 0);
+  p.set("uStill", still ? 1 : 0);
+  p.set("uStillWeight", stillWeight(m.frame / kFramesInRound));
+  p.set("uMostCount", kMostCount);
+  p.set("uSpread", kSpread);
+  p.set("uEnuFromCamera", parts.enuFromCamera);
+  p.set("uRayScale", parts.rayScale);
+  p.set("uLastClipFromEnu", m.parts.clipFromEnu);
+  p.set("uEyeMoveM", glm::vec3(parts.eyeM - m.parts.eyeM));
+  p.set("uEyeM", static_cast<float>(parts.eyeM.z));
+  p.set("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
+  p.bind("uFresh", m.fresh);
+  p.bind("uFreshDepth", m.freshDepth);
+  p.bind("uHistory", m.history[m.now]);
+  p.bind("uCount", m.count[m.now]);
+  m.now = 1 - m.now;
+  triangle_.draw(p, m.resolved[m.now]);
+}
+
+void LiveVolumes::march(std::size_t view, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
+                        const CloudTextures& clouds, const SkyTextures& tables,
+                        const shading::ViewParts& parts, int width, int height) {
+  if (view == 0 || !light_) keepLight(state, clouds, parts);
+  if (memories_.size() <= view) memories_.resize(view + 1);
+  std::unique_ptr<Memory>& place = memories_[view];
+  if (!place || place->history[0].width() != width || place->history[0].height() != height)
+    place = std::make_unique<Memory>(makeMemory(width, height, layout_.bands.size()));
+  Memory& m = *place;
+  const bool still =
+      m.any && sameView(m.parts, parts) && m.seconds == state.secondsAfter && m.light == lightNumber_;
+  // Rounds begin anew, so that what a still view converges to knows no past.
+  if (still && !m.still) m.frame = 0;
+  m.still = still;
+  if (still && m.frame >= kRounds * kFramesInRound) return;
+  setMarch(m, state, sheets, parts, width, height);
+  clouds.bind(*marching_);
+  tables.bind(*marching_);
+  triangle_.draw(*marching_, m.march);
+  resolve(m, state, parts, still);
+  m.any = true;
+  ++m.frame;
+  m.parts = parts;
+  m.seconds = state.secondsAfter;
+  m.light = lightNumber_;
+}
+
+void LiveVolumes::show(std::size_t view, const gpu::Target& target, float scale) {
+  const Memory& m = *memories_[view];
+  show_.bind("uHistory", m.history[m.now]);
+  show_.set("uOffsetPx", glm::ivec2(target.area.x, target.area.y));
+  show_.set("uReach", reach_);
+  show_.set("uScale", scale);
+  triangle_.draw(show_, target, {.blend = gpu::Blend::kOver});
+}
+
+}  // namespace welkin::render
