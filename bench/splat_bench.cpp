@@ -56,7 +56,8 @@ SplatTable measureSplats() {
       for (field::Metaball& b : balls) b.centreM.x += 0.5;
       target.clear();
       gpu::Stopwatch watch;
-      pass.draw(balls, {}, view, tables, target);
+      const render::SplatCloud cloud{balls};
+      pass.draw({&cloud, 1}, view, tables, {target});
       const double took = watch.finishedMs();
       if (round > 0) ms.push_back(took);  // the first compiles
     }

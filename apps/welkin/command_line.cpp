@@ -69,7 +69,8 @@ CLI::Option* add(CLI::App* app, const std::string& name, Flag& value, const char
 void describeRender(CLI::App* app, RenderArgs& a) {
   const Docs docs = scene::documentParams<scene::Scene>();
   const auto one = [&docs](const char* path) { return helpOf(docs, path); };
-  add(app, "scene", a.scene, "SCENE.toml", "scene file; `welkin help scene` lists its keys");
+  add(app, "scene", a.scene, "SCENE.toml|CLOUD.json",
+      "scene file, of which `welkin help scene` lists the keys; or metaballs, a cloud before a clear sky");
   add(app, "-o,--output", a.out, "OUT",
       "picture .png .exr .hdr, video .mp4 .webm, or frames as name_%04d.png; .exr and .hdr hold luminance in "
       "cd/m2");

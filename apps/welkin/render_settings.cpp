@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_settings.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <string_view>
@@ -9,8 +11,11 @@
 #include <vector>
 
 #include "usage_error.h"
+#include "welkin/core/units.h"
+#include "welkin/field/metaballs.h"
 #include "welkin/io/frame_path.h"
 #include "welkin/io/video.h"
+#include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_text.h"
 #include "welkin/scene/scene_file.h"
 #include "welkin/scene/theme.h"
@@ -106,6 +111,24 @@ void checkSlab(const RenderSettings& r, const RenderArgs& a) {
   if (slab && r.scene.output.frames > 1) throw UsageError("a slab does not change in time; expected 1 frame");
 }
 
+// A cloud alone: its base a kilometre up, or more if it is larger, and the eye where it fills half the width.
+void frameCloud(Scene& s, bool eyeGiven, bool lookGiven) {
+  constexpr double kFill = 0.55, kLeastBaseM = 1000.0;
+  const field::Box box = field::boundsOf(scene::readMetaballs(s.metaballs[0].file).balls());
+  const glm::dvec3 size = box.high - box.low;
+  const double wide = std::max({size.x, size.y, 1.3 * size.z});
+  const double baseM = std::max(kLeastBaseM, size.z);
+  const double distanceM = 2.0 * wide;
+  const glm::dvec3 middle = 0.5 * (box.low + box.high);
+  s.metaballs[0].positionM = {-middle.x, distanceM - middle.y, baseM - box.low.z};
+  if (!eyeGiven) s.camera.eyeM = std::min(baseM - 0.1 * size.z, 20000.0);
+  if (lookGiven) return;
+  const double up = baseM + 0.45 * size.z - s.camera.eyeM;
+  s.camera.headingDeg = 0.0;
+  s.camera.pitchDeg = degrees(std::atan2(up, distanceM));
+  s.camera.fovDeg = 2.0 * degrees(std::atan(0.5 * wide / kFill / std::hypot(distanceM, up)));
+}
+
 // What the name of the output says about its kind.
 void setOutput(RenderSettings& r, const std::string& out) {
   r.out = out;
@@ -164,7 +187,11 @@ RenderSettings renderSettings(const RenderArgs& a) {
   Scene flagged;
   if (a.place) setPlace(flagged, "--place", *a.place);
   bool sizeGiven = a.size.has_value();
-  if (a.scene) {
+  const bool metaballs = a.scene && std::filesystem::path(*a.scene).extension() == ".json";
+  if (metaballs) {
+    if (a.theme) scene::apply(themeOfFlag(*a.theme), r.scene);
+    r.scene.metaballs.push_back({.file = *a.scene});
+  } else if (a.scene) {
     if (a.theme) themeOfFlag(*a.theme);  // so that a wrong name is the flag's mistake
     scene::SceneFile file = scene::readSceneFile(
         *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt, a.theme);
@@ -192,6 +219,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     s.output.width = size.width;
     s.output.height = size.height;
   }
+  if (metaballs) frameCloud(s, a.eye.has_value(), a.look.has_value());
   set(s, "--technique", "technique", a.technique);
   set(s, "--quality", "output.quality", a.quality);
   set(s, "--exposure", "output.exposure_ev", a.exposure);

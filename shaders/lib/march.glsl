@@ -8,7 +8,12 @@
 // of two, ...) and what WELKIN_EACH_SHEET says of the sheet. A sheet's place in it is that of its
 // height overhead: exact for sky planes; a plane rises off the curved earth and a dome comes down to the ground, but they keep
 // their place.
-// Needs lib/sky_uniforms.glsl before it, and with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl.
+// Clouds of metaballs (WELKIN_SPLATS) are one more surface, at their mean distance along the ray.
+// Needs lib/sky_uniforms.glsl before it, with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl, with splats lib/splat_layer.glsl.
+
+#if defined(WELKIN_SHEETS) || defined(WELKIN_SPLATS)
+#define WELKIN_SURFACES
+#endif
 
 uniform sampler3D uLightVolume;
 uniform DropletPhase uDroplets;
@@ -30,9 +35,9 @@ struct CloudRay {
   vec3 luminance;       // scattered towards the eye by volumes, cd/m2
   float transmittance;
   float depthM;         // mean distance of the volumes that are seen
-#ifdef WELKIN_SHEETS
+#ifdef WELKIN_SURFACES
   float hidden;         // the share of what is behind that volumes hide
-  vec3 sheets;          // luminance of thin layers as it arrives, air and all
+  vec3 sheets;          // luminance of surfaces as it arrives, air and all
 #endif
 };
 
@@ -94,10 +99,23 @@ struct MarchState {
   float weightedDepth;
   float weight;
   int steps;
-#ifdef WELKIN_SHEETS
+#ifdef WELKIN_SURFACES
   vec3 sheets;
 #endif
+#ifdef WELKIN_SPLATS
+  SplatSeen splats;     // no light: behind the ray
+#endif
 };
+
+#ifdef WELKIN_SPLATS
+// Those that are met before a distance.
+void meetSplats(float distanceM, inout MarchState state) {
+  if (state.splats.distanceM >= distanceM || state.splats.light.w <= 0.0) return;
+  state.sheets += state.transmittance * vec3(state.splats.light);
+  state.transmittance *= max(1.0 - state.splats.light.w, 0.0);
+  state.splats.light = vec4(0.0);
+}
+#endif
 
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
@@ -171,6 +189,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
       entering = false;
       skinStep = 0.5 / point.extinction;
     }
+#ifdef WELKIN_SPLATS
+    meetSplats(t, state);
+#endif
     float stepM = min(shortStep, skinStep);
     skinStep *= 2.0;
     float through = exp(-point.extinction * stepM);
@@ -182,7 +203,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     if (state.transmittance < 0.01) {
       // What is left would look like what was seen.
       state.luminance /= 1.0 - state.transmittance;
-#ifdef WELKIN_SHEETS
+#ifdef WELKIN_SURFACES
       state.sheets /= 1.0 - state.transmittance;
       state.weightedDepth /= 1.0 - state.transmittance;
       state.weight /= 1.0 - state.transmittance;
@@ -213,12 +234,20 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, vec2 phases, float cosSun) {
 }
 #endif
 
+#ifdef WELKIN_SPLATS
+#define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0, vec3(0.0), splatsAlong(dir))
+#elif defined(WELKIN_SHEETS)
+#define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0, vec3(0.0))
+#else
+#define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0)
+#endif
+
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
   vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
                      mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
 #ifdef WELKIN_SHEETS
-  MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0, vec3(0.0));
+  MarchState state = WELKIN_MARCH_BEGIN;
   vec2 stretch;
   // All sheets first, as the order of light does not matter: where, and their patterns, one by one, since samplers are; then their
   // light in a loop, which compilers are not to unroll (uHits): the shader grows little with each sheet.
@@ -248,17 +277,24 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   marchBand(band, stretch, dir, pixelRad, phases, cosSun, dither, state);
 #define WELKIN_MARCH_DOWN(p, band) WELKIN_MARCH(p, band, false)
 #define WELKIN_MARCH_UP(p, band) WELKIN_MARCH(p, band, true)
+#ifdef WELKIN_SPLATS
+#define WELKIN_MEET_SPLATS(distanceM) meetSplats(distanceM, state);
+#else
+#define WELKIN_MEET_SPLATS(distanceM)
+#endif
 #define WELKIN_ADD_SHEET(k)                                                              \
   if (seen[k].alpha > 0.0) {                                                             \
+    WELKIN_MEET_SPLATS(seen[k].hit.distanceM)                                            \
     state.sheets += state.transmittance * seen[k].alpha * sheetLight[k];                 \
     state.transmittance *= 1.0 - seen[k].alpha;                                          \
   }
   WELKIN_EACH_DOWN(WELKIN_MARCH_DOWN, WELKIN_ADD_SHEET)
   WELKIN_EACH_UP(WELKIN_MARCH_UP, WELKIN_ADD_SHEET)
+  WELKIN_MEET_SPLATS(endM)
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
                   state.sheets);
 #else
-  MarchState state = MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0);
+  MarchState state = WELKIN_MARCH_BEGIN;
   vec2 stretch;
 #define WELKIN_MARCH_DOWN(i)                                \
   stretch = bandStretch(vec2(uBands[i]), false, dir.z);     \
@@ -270,6 +306,12 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
   WELKIN_EACH_BAND_DOWN(WELKIN_MARCH_DOWN)
   WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
+#ifdef WELKIN_SPLATS
+  meetSplats(endM, state);
+  return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
+                  state.sheets);
+#else
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0);
+#endif
 #endif
 }

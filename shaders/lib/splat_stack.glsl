@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stack of slices across a direction of light: the optical depth from the light to the end of each slice. The slices lie side by
-// side in one texture, a margin of a texel around each.
-
-const int kSplatSlices = 32;      // 8 columns, 4 rows
-const vec2 kSplatTiles = vec2(8.0, 4.0);
-const float kSplatTilePx = 64.0;
+// A stack of slices across a direction of light, of one cloud: the optical depth from the light to the end of each slice. The slices lie
+// side by side in a block of one texture, a margin of texels around each. A cloud has three blocks beside one another: from the key
+// light, from the zenith, and from the eye. The eye's is in perspective: across, lengths are as seen at the cloud's centre.
 
 struct SplatStack {
   vec3 centreM;                   // from the eye
@@ -13,23 +10,64 @@ struct SplatStack {
   vec3 away;                      // the way the light goes
   float halfM;                    // half the side of a slice
   float halfDepthM;
+  vec3 block;                     // texel at its corner, x, y; texels on a slice's side, twice the slices
 };
 
-// Texture coordinate of a place in a slice; at: from -1 to 1.
-vec2 splatTile(int slice, vec2 at) {
-  vec2 tile = vec2(float(slice % 8), float(slice / 8));
-  vec2 px = kSplatTilePx * 0.5 + clamp(at, -1.0, 1.0) * (kSplatTilePx * 0.5 - 1.0);
-  return (tile + px / kSplatTilePx) / kSplatTiles;
+// Slices beside one another in a block.
+int splatColumns(float side) { return side > 32.0 ? 8 : 4; }
+
+// Texel coordinate of a place in a slice; at: from -1 to 1.
+vec2 splatTexel(SplatStack stack, int slice, vec2 at) {
+  int columns = splatColumns(stack.block.z);
+  vec2 tile = vec2(float(slice % columns), float(slice / columns));
+  return stack.block.xy + stack.block.z * (tile + 0.5) + clamp(at, -1.0, 1.0) * (stack.block.z * 0.5 - 1.0);
 }
 
 // Optical depths of a point: from the light, and on to the other side.
 vec2 splatDepths(SplatStack stack, sampler2D depths, vec3 p) {
   vec3 q = p - stack.centreM;
   vec2 at = vec2(dot(q, stack.across), dot(q, stack.upward)) / stack.halfM;
-  float z = clamp((dot(q, stack.away) / stack.halfDepthM * 0.5 + 0.5) * float(kSplatSlices), 0.0, float(kSplatSlices) - 0.001);
+  vec2 perTexel = 1.0 / vec2(textureSize(depths, 0));
+  float slices = 0.5 * stack.block.z;
+  float z = clamp((dot(q, stack.away) / stack.halfDepthM * 0.5 + 0.5) * slices, 0.0, slices - 0.001);
   int slice = int(z);
-  float before = slice > 0 ? textureLod(depths, splatTile(slice - 1, at), 0.0).x : 0.0;
-  float here = mix(before, textureLod(depths, splatTile(slice, at), 0.0).x, z - float(slice));
-  float all = textureLod(depths, splatTile(kSplatSlices - 1, at), 0.0).x;
+  float before = slice > 0 ? textureLod(depths, splatTexel(stack, slice - 1, at) * perTexel, 0.0).x : 0.0;
+  float here = mix(before, textureLod(depths, splatTexel(stack, slice, at) * perTexel, 0.0).x, z - float(slice));
+  float all = textureLod(depths, splatTexel(stack, int(slices) - 1, at) * perTexel, 0.0).x;
   return max(vec2(here, all - here), 0.0);
+}
+
+// The same with more on the other side where the line misses most of the cloud: what bulges from it is lit back by its body, of which the
+// line knows nothing. Half of what a line nearer to the cloud's centre has.
+const float kSplatInward = 0.4;
+
+vec2 splatBodyDepths(SplatStack stack, sampler2D depths, vec3 p) {
+  vec2 here = splatDepths(stack, depths, p), inward = splatDepths(stack, depths, mix(p, stack.centreM, kSplatInward));
+  return vec2(here.x, max(here.y, 0.5 * (here.y + inward.x + inward.y - here.x)));
+}
+
+// Distance along a ray from the eye at which a cloud has that optical depth in front; past the cloud where it has less. The stack is the
+// eye's.
+float splatReach(SplatStack stack, sampler2D depths, vec3 dir, float depth) {
+  float centreM = length(stack.centreM), cosine = dot(dir, stack.away);
+  vec2 at = vec2(dot(dir, stack.across), dot(dir, stack.upward)) * (centreM / (cosine * stack.halfM));
+  vec2 perTexel = 1.0 / vec2(textureSize(depths, 0));
+  int slices = int(0.5 * stack.block.z), first = 0, end = slices;
+  float before = 0.0, here = textureLod(depths, splatTexel(stack, slices - 1, at) * perTexel, 0.0).x;
+  if (here <= depth) return 1e9;
+  // The first slice at whose end it is exceeded is in [first, end).
+  for (int i = 0; i < 6; ++i) {
+    if (end - first <= 1) break;
+    int middle = (first + end) / 2;
+    float d = textureLod(depths, splatTexel(stack, middle - 1, at) * perTexel, 0.0).x;
+    if (d > depth) {
+      end = middle;
+      here = d;
+    } else {
+      first = middle;
+      before = d;
+    }
+  }
+  float slice = float(first) + clamp((depth - before) / max(here - before, 1e-6), 0.0, 1.0);
+  return (centreM + (2.0 * slice / float(slices) - 1.0) * stack.halfDepthM) / cosine;
 }

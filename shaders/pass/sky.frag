@@ -17,15 +17,21 @@
 #include "lib/sheet_ray.glsl"
 #include "lib/sheet_shadows.glsl"
 #endif
+#ifdef WELKIN_SPLATS
+#include "lib/splat_layer.glsl"
+#endif
 #include "lib/march.glsl"
 
-#ifdef WELKIN_SHEETS
 float groundSunlight(vec2 q) {
-  return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))) * sheetsSunlight(vec3(q, 0.0));
-}
-#else
-float groundSunlight(vec2 q) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))); }
+  float sun = exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0)));
+#ifdef WELKIN_SHEETS
+  sun *= sheetsSunlight(vec3(q, 0.0));
 #endif
+#ifdef WELKIN_SPLATS
+  sun *= splatSunlight(vec3(q, 0.0));
+#endif
+  return sun;
+}
 
 #include "lib/background.glsl"
 
@@ -57,7 +63,7 @@ void main() {
 #endif
   vec3 color = vec3(0.0);
   if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad);
-#ifdef WELKIN_SHEETS
+#ifdef WELKIN_SURFACES
   color += ray.sheets;
   if (ray.hidden > 0.0001) {
     vec3 inscatter, through;

@@ -4,7 +4,7 @@
 #include "lib/splat.glsl"
 
 in vec2 vAcross;
-flat in vec4 vBall;
+flat in vec3 vBall;
 
 layout(location = 0) out vec4 outDepth;
 

@@ -20,16 +20,6 @@ constexpr int kBisections = 11;  // to 0.004 deviations
 constexpr float kThickening = 1.5f;
 constexpr int kMostThickenings = 6;
 
-// Direction i of n, evenly over the upper hemisphere: a Fibonacci lattice (uniform in z, golden-angle steps
-// in azimuth).
-glm::vec3 hemisphereDirection(int i, int n) {
-  const double z = (i + 0.5) / n;
-  const double azimuth = i * kPi * (3.0 - std::sqrt(5.0));
-  const double r = std::sqrt(1.0 - z * z);
-  return {static_cast<float>(r * std::cos(azimuth)), static_cast<float>(r * std::sin(azimuth)),
-          static_cast<float>(z)};
-}
-
 float depthInDirection(const CloudField& field, const CoverView& view, int direction, int only) {
   const glm::vec3 eye(0.0f, 0.0f, static_cast<float>(view.eyeM));
   return field.opticalDepth(eye, hemisphereDirection(direction, view.directions), kCoverOpticalDepth, only);
@@ -53,6 +43,16 @@ Split split(const CloudField& field, const CloudLayer& layer, const CoverView& v
 }
 
 }  // namespace
+
+// A Fibonacci lattice (uniform in z, golden-angle steps
+// in azimuth).
+glm::vec3 hemisphereDirection(int i, int n) {
+  const double z = (i + 0.5) / n;
+  const double azimuth = i * kPi * (3.0 - std::sqrt(5.0));
+  const double r = std::sqrt(1.0 - z * z);
+  return {static_cast<float>(r * std::cos(azimuth)), static_cast<float>(r * std::sin(azimuth)),
+          static_cast<float>(z)};
+}
 
 double measureCover(const CloudField& field, const CoverView& view, int only) {
   return coverOf(layerOpticalDepths(field, view, only));

@@ -21,6 +21,9 @@ struct CoverView {
   int directions = 1500;  // spread evenly over the hemisphere
 };
 
+// Direction i of n, evenly over the upper hemisphere.
+glm::vec3 hemisphereDirection(int i, int n);
+
 // Fraction in [0, 1]; `only` picks one layer, -1: all together.
 double measureCover(const CloudField& field, const CoverView& view, int only = -1);
 

@@ -32,8 +32,13 @@ void describe(MetaballMotion& m, ParamVisitor& v) {
 
 std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMotion& motion, double timeS) {
   std::vector<Metaball> moved(balls.begin(), balls.end());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    Metaball& b = moved[i];
+  move(moved, motion, timeS);
+  return moved;
+}
+
+void move(std::span<Metaball> balls, const MetaballMotion& motion, double timeS) {
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    Metaball& b = balls[i];
     const double height = b.centreM.z - motion.referenceM;
     b.centreM += timeS * motion.windMps;
     if (motion.lifeS <= 0.0) continue;
@@ -46,7 +51,6 @@ std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMot
     if (volume < kLeastVolume) b.density = 0.0;
     b.radiusM *= std::cbrt(std::max(volume, kLeastVolume));
   }
-  return moved;
 }
 
 }  // namespace welkin::field

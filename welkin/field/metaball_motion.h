@@ -29,5 +29,7 @@ void describe(MetaballMotion& m, ParamVisitor& v);
 // The balls at that time, as many and in the same order; one that is not alive has density 0 and a radius of
 // a thousandth. Densities of the others stay, radii grow with the cube root of the volume.
 std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMotion& motion, double timeS);
+// The same in place.
+void move(std::span<Metaball> balls, const MetaballMotion& motion, double timeS);
 
 }  // namespace welkin::field

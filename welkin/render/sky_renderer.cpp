@@ -19,6 +19,7 @@
 #include "welkin/render/programs.h"
 #include "welkin/render/sky_box_texture.h"
 #include "welkin/render/sky_sheets.h"
+#include "welkin/render/sky_splats.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/uniforms.h"
@@ -61,6 +62,7 @@ struct SkyRenderer::Impl {
   LightVolumePass lightVolume;
   std::optional<CloudTextures> clouds;
   SkySheets sheets;
+  SkySplats splats;
   std::optional<SkyBoxTexture> box;  // in the place of the clear sky
   std::optional<FlarePass> flare;
   gpu::Texture2D sum;  // of sub-frames
@@ -97,6 +99,7 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   impl_->context.makeCurrent();
   impl_->updateBox(state.scene.skyBox);
   impl_->sheets.update(state);
+  impl_->splats.update(state);
   if (impl_->sheets.empty()) return impl_->draw(state, progress);
   scene::SkyState under = state;
   under.ambient = impl_->sheets.ambient();
@@ -118,12 +121,14 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
       sheets.empty() ? shading::marchDefines(layout, eyeM) : sheets.defines(layout, eyeM);
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  if (!splats.empty()) SkySplats::addDefines(defines);
   gpu::Program& p = sky.with(defines);
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));
   setUniforms(p, shading::marchUniforms(settings));
   setUniforms(p, shading::lightVolumeUniforms(layout));
   if (!sheets.empty()) sheets.set(p, state, layout);
+  if (!splats.empty()) splats.draw(state, tables, p);
   return p;
 }
 
@@ -132,6 +137,7 @@ void SkyRenderer::Impl::bind(gpu::Program& p) {
   tables.bind(p);
   p.bind("uLightVolume", lightVolume.volume());
   sheets.bind(p);
+  if (!splats.empty()) splats.bind(p);
   if (box) box->bind(p);
 }
 
@@ -151,8 +157,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   done("light volume");
 
   shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  // Sheets alone have no grain for the resolve to take out.
-  if (!sheets.empty() && layout.bands.empty()) settings.noise = 1e-4f;
+  // Sheets and splats alone have no grain for the resolve to take out.
+  if ((!sheets.empty() || !splats.empty()) && layout.bands.empty()) settings.noise = 1e-4f;
   gpu::Program& p = programFor(state, layout, settings, false);
   setUniforms(p, shading::projectorUniforms(state));
   bind(p);

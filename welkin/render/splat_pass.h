@@ -3,69 +3,112 @@
 // Efficient Method for Realistic Animation of Clouds", M. J. Harris and A. Lastra 2001, "Real-Time Cloud
 // Rendering", and P. Man 2006, "Generating and Real-Time Rendering of Clouds". Nothing is read back.
 //
-// Light pass: the balls' optical depths add up in slices across the light's direction, whatever their order,
-// for the sun (or moon) and for the zenith. Eye pass: the balls from far to near, each with its exact optical
-// depth along every ray, lit by what the slices say at four places in it; light scattered more than once is
-// lib/cloud_light.glsl's, as in marched volumes. The phase function is the first scattering's; all later ones
-// are those of droplets.
+// Light pass: of each cloud the balls' optical depths add up in slices across the light's direction, whatever
+// their order, for the sun (or moon) and for the zenith; finer slices for clouds that are larger in view.
+// From them, the light that each ball sends to the eye, along 4 x 4 rays through it (16 x 16 in stills). Eye
+// pass: the balls from far to near, each with its exact optical depth along every ray. Light scattered more
+// than once is lib/cloud_light.glsl's, as in marched volumes. The phase function is the first scattering's;
+// all later ones are those of droplets. Clouds do not shade one another.
 //
-// Of other things in the sky it knows nothing: it draws over what is in the target.
+// Of other things in the sky it knows nothing but the depth that an engine hands over: it draws over what is
+// in the target.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "welkin/field/metaballs.h"
 #include "welkin/gpu/draw.h"
 #include "welkin/gpu/framebuffer.h"
 #include "welkin/gpu/instances.h"
+#include "welkin/gpu/texel_reader.h"
+#include "welkin/render/flare_pass.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/scene/metaballs.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
 
 namespace welkin::render {
 
-enum class SplatPhase { kDroplets, kRayleigh, kIsotropic };
+using SplatPhase = scene::MetaballPhase;
 
-struct SplatLook {
+// One cloud: in the view's world, densities being extinctions, 1/m; negative ones take away. Balls of radius
+// 0 or density 0 are left out.
+struct SplatCloud {
+  std::span<const field::Metaball> balls;
   SplatPhase phase = SplatPhase::kDroplets;
   float albedo = 1.0f;  // 0.9 in P. Man
-  float scale = 1.0f;   // written value for each cd/m2
 };
+
+struct SplatTarget {
+  const gpu::Target& target;
+  float scale = 1.0f;     // written value for each cd/m2
+  bool distance = false;  // the target's attachment 1 gets the mean distance, km, premultiplied
+  // What hides balls, softly: engine's depth of a perspective without skew; reversed depth is taken for that
+  // of glClipControl(GL_ZERO_TO_ONE).
+  EngineDepth depth{};
+  glm::dmat4 projection{1.0};  // with depth: the view's
+};
+
+// How finely light is sampled: as frames have time for, or some ten times finer.
+enum class SplatDetail { kLive, kStill };
 
 class SplatPass {
  public:
-  SplatPass();
+  explicit SplatPass(SplatDetail detail = SplatDetail::kLive);
+  ~SplatPass();
 
   // What all draws under one sky share; before draws and whenever the sky has changed.
   void setSky(const shading::Uniforms& sky, const glm::vec3& toLight);
 
-  // Over what is in the target. balls: in the view's world, densities being extinctions, 1/m; negative ones
-  // take away. Ones of radius 0 or density 0 are left out. The picture depends on the arguments alone, not on
-  // the balls' order unless two are equally far. Allocates nothing once it has drawn as many balls.
-  void draw(std::span<const field::Metaball> balls, const SplatLook& look, const shading::ViewParts& view,
-            const SkyTextures& tables, const gpu::Target& target);
+  // Over what is in the target. The picture depends on the arguments alone, not on the balls' order unless
+  // two are equally far. Allocates nothing once it has drawn as many balls.
+  void draw(std::span<const SplatCloud> clouds, const shading::ViewParts& view, const SkyTextures& tables,
+            const SplatTarget& to);
+
+  // Their shadow: optical depths through all of them across the light, for lib/splat_layer.glsl. At most
+  // kShadowReachM from the eye; none where the light stands below the horizon.
+  static constexpr double kShadowReachM = 20000.0;
+  void drawShadow(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
+  void setShadow(gpu::Program& program) const;
 
  private:
-  struct Stack;
-  struct StackTextures {
-    gpu::Texture2D slices, depths;
-    gpu::Framebuffer toSlices, toDepths;
+  struct Block;  // a cloud in view, and where its stacks are
+  struct Piece {
+    glm::vec3 centreM;  // from the eye
+    float radiusM, density;
+    std::uint32_t block;
   };
-  void drawStack(std::span<const field::Metaball> balls, const glm::dvec3& eyeM, const glm::vec3& toLight,
-                 const std::string* names, const StackTextures& to);
-  void sort(std::span<const field::Metaball> balls, const glm::dvec3& eyeM);
+  void findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view);
+  void drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
+  void addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
+                Block& block);
+  void sort();
+  void drawLight(const shading::ViewParts& view, const SkyTextures& tables);
+  void drawBalls(const shading::ViewParts& view, const SplatTarget& to);
 
-  gpu::Program depth_, sum_, eye_;
-  gpu::FullscreenTriangle triangle_;
-  gpu::Instances slices_{2}, quads_{2};
-  StackTextures sun_, sky_;
+  SplatDetail detail_;
+  gpu::Program depth_, sum_, light_;
+  std::array<gpu::Program, 4> eye_;  // bit 0: with distance, bit 1: with an engine's depth
+  gpu::Instances inSlices_{2}, inBlocks_{1}, inTiles_{5}, quads_{2};
+  gpu::Texture2D slices_, depths_, tiles_;
+  std::optional<gpu::Framebuffer> toSlices_, toDepths_, toTiles_;
+  glm::vec3 tileLayout_{1.0f};  // texels on a tile's side; tiles that the texture has room for, across and up
+  gpu::TexelReader depthReader_;
   glm::vec3 toLight_{0.0f, 0.0f, 1.0f};
+  std::vector<Block> blocks_;
+  std::vector<Piece> pieces_;
   std::vector<std::uint32_t> order_;  // far to near, as the last frame had it
-  std::vector<double> distances_;     // of each ball, squared
+  std::vector<float> distances_;      // of each piece
   std::vector<float> values_;
+  std::vector<std::uint32_t> bySize_;
+  gpu::Texture2D shadow_;
+  std::optional<gpu::Framebuffer> toShadow_;
+  std::array<glm::vec4, 2> shadowAxes_{};
+  float shadowHalfM_ = 0.0f;
 };
 
 }  // namespace welkin::render

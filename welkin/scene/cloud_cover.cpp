@@ -14,6 +14,7 @@
 #include "welkin/field/cloud_field.h"
 #include "welkin/field/cover.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/metaballs.h"
 
 namespace welkin::scene {
 namespace {
@@ -63,7 +64,7 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
   double clear = 1.0;  // the share of the sky that random overlap leaves
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     const weather::Layer& layer = weather.layers[i];
-    if (isSheet(scene, layer)) {
+    if (isSheet(scene, layer) || isMetaballs(scene, layer)) {
       result.push_back({patternSeed(scene, i, 0), 0.0f, static_cast<float>(layer.extinctionPerM)});
       continue;
     }
@@ -134,7 +135,8 @@ void moveClouds(const Scene& scene, const weather::Weather& weather,
 }
 
 DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
-                            const field::CloudField& clouds, double secondsAfter) {
+                            const field::CloudField& clouds, double secondsAfter,
+                            const MetaballSky* metaballs) {
   DeliveredCover cover;
   const std::vector<Sheet> sheets = sheetsOf(scene, weather);
   std::vector<float> together(kReportView.directions);
@@ -159,7 +161,10 @@ DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
       continue;
     }
     clearAsked *= 1.0 - layer.oktas / kOktas;
-    const std::vector<float> depths = field::layerOpticalDepths(clouds, kReportView, static_cast<int>(i));
+    const std::vector<float> depths =
+        metaballs && isMetaballs(scene, layer)
+            ? metaballs->layerOpticalDepths(i, secondsAfter, kReportView.directions)
+            : field::layerOpticalDepths(clouds, kReportView, static_cast<int>(i));
     cover.layers.push_back({layer.oktas, kOktas * field::coverOf(depths)});
     together = sumOf(together, depths);
   }

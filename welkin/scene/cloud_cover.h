@@ -20,6 +20,8 @@ class CloudField;
 
 namespace welkin::scene {
 
+class MetaballSky;
+
 struct LayerCover {
   double requestedOktas = 0.0;
   double deliveredOktas =
@@ -36,8 +38,8 @@ struct LayerCalibration {
 };
 
 // For each layer of the weather, so that each covers by itself what it should and all of them together what
-// they should by random overlap. `noise` is that of the scene's seed. Layers that are drawn as sheets are
-// left out: nothing is settled for them.
+// they should by random overlap. `noise` is that of the scene's seed. Layers that are drawn as sheets or
+// metaballs are left out: nothing is settled for them.
 std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
                                               const std::shared_ptr<const field::CloudNoise>& noise);
 
@@ -57,8 +59,10 @@ struct DeliveredCover {
   LayerCover sky;                  // all together
 };
 
-// Volumes as seen from the ground, sheets as their patterns have it; a sheet lies over all others at random.
+// Volumes as seen from the ground, and metaballs, which are those of the scene and only needed where a layer
+// is drawn so; sheets as their patterns have it; a sheet lies over all others at random.
 DeliveredCover measureCover(const Scene& scene, const weather::Weather& weather,
-                            const field::CloudField& clouds, double secondsAfter);
+                            const field::CloudField& clouds, double secondsAfter,
+                            const MetaballSky* metaballs = nullptr);
 
 }  // namespace welkin::scene

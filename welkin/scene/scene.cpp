@@ -12,7 +12,7 @@ namespace {
 // Together the two limits keep a picture of floats under 2 GiB.
 constexpr double kMaxSide = 16384;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
-constexpr std::size_t kMaxSheets = 8;
+constexpr std::size_t kMaxSheets = 8, kMaxMetaballs = 256;
 constexpr double kYearS = 366.0 * 86400.0;
 
 }  // namespace
@@ -83,7 +83,8 @@ void describe(Scene& s, ParamVisitor& v) {
             "to no "
             "time, as thin sheets on planes, on planes bent over the earth (skyplane), on domes, or on bent "
             "planes "
-            "with living octaves"},
+            "with living octaves; metaballs: cumulus, stratocumulus and cumulonimbus as clouds of balls, the "
+            "others as volumes"},
            s.technique);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.value({"theme", "",
@@ -107,6 +108,9 @@ void describe(Scene& s, ParamVisitor& v) {
   v.list({"sheet", "",
           "a thin layer of cloud by hand, drawn beside those of the weather, volumes and sheets alike"},
          s.sheets);
+  v.list({"metaballs", "",
+          "a cloud of metaballs by hand, among all others by its distance; covers are measured without it"},
+         s.metaballs);
   v.list({"slab_column", "", "columns of a slab that is not homogeneous, from the west"}, s.slab.columns);
 }
 
@@ -128,6 +132,10 @@ void validate(const Scene& s) {
     throw ParameterError("there are " + std::to_string(s.sheets.size()) + " sheets; expected at most " +
                          std::to_string(kMaxSheets));
   for (const Sheet& sheet : s.sheets) validate(sheet);
+  if (s.metaballs.size() > kMaxMetaballs)
+    throw ParameterError("there are " + std::to_string(s.metaballs.size()) +
+                         " clouds of metaballs; expected at most " + std::to_string(kMaxMetaballs));
+  for (const MetaballCloud& cloud : s.metaballs) validate(cloud);
   validate(s.skyBox);
   validate(s.slab);
   if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)
@@ -140,11 +148,20 @@ bool drawsSheets(Technique technique) {
 }
 
 Technique techniqueOf(const Scene& scene, const weather::Layer& layer) {
-  return layer.technique == Technique::kAuto ? scene.technique : layer.technique;
+  if (layer.technique != Technique::kAuto) return layer.technique;
+  // Only heaps are made of balls, unless a layer asks for them itself.
+  using weather::Genus;
+  const bool heaps = layer.genus == Genus::kCumulus || layer.genus == Genus::kStratocumulus ||
+                     layer.genus == Genus::kCumulonimbus;
+  return scene.technique == Technique::kMetaballs && !heaps ? Technique::kVolume : scene.technique;
 }
 
 bool isSheet(const Scene& scene, const weather::Layer& layer) {
   return drawsSheets(techniqueOf(scene, layer));
+}
+
+bool isMetaballs(const Scene& scene, const weather::Layer& layer) {
+  return techniqueOf(scene, layer) == Technique::kMetaballs;
 }
 
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather) {

@@ -12,6 +12,7 @@
 
 #include "welkin/core/params.h"
 #include "welkin/scene/drift.h"
+#include "welkin/scene/metaballs.h"
 #include "welkin/scene/sheet.h"
 #include "welkin/scene/sky_box.h"
 #include "welkin/scene/slab.h"
@@ -76,13 +77,14 @@ struct Scene {
   std::vector<weather::Layer> layers;      // the weather by hand
   Technique technique = Technique::kAuto;  // of layers that name none
   SheetTier tier = SheetTier::kLit;        // of layers that are drawn as sheets
-  std::optional<std::string> theme;  // in scene files: what technique, tier, drift and sheets start from;
-                                     // empty once it is read (theme.h)
-  LayerOctaves octaves;              // of layers with the technique octaves
-  std::vector<Sheet> sheets;         // thin layers by hand, beside the weather's
-  Drift drift;                       // of wind and cover
-  SkyBox skyBox;                     // in the place of the clear sky
-  Slab slab;                         // in the place of everything
+  std::optional<std::string> theme;      // in scene files: what technique, tier, drift and sheets start from;
+                                         // empty once it is read (theme.h)
+  LayerOctaves octaves;                  // of layers with the technique octaves
+  std::vector<Sheet> sheets;             // thin layers by hand, beside the weather's
+  std::vector<MetaballCloud> metaballs;  // single clouds by hand, beside the weather's
+  Drift drift;                           // of wind and cover
+  SkyBox skyBox;                         // in the place of the clear sky
+  Slab slab;                             // in the place of everything
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
@@ -99,6 +101,8 @@ void validate(const Scene& s);
 Technique techniqueOf(const Scene& scene, const weather::Layer& layer);
 bool drawsSheets(Technique technique);
 bool isSheet(const Scene& scene, const weather::Layer& layer);  // drawn as one
+bool isMetaballs(const Scene& scene,
+                 const weather::Layer& layer);  // drawn as them: neither sheet nor marched volume
 // The sheets of a scene: the layers of the weather that are drawn so, then those by hand. Each with
 // its share of the scene's drift.
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);

@@ -77,6 +77,8 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
 
   scene.theme.reset();
   finishSheets(scene.sheets, name);
+  for (MetaballCloud& cloud : scene.metaballs)
+    if (!cloud.file.empty()) cloud.file = besideFile(name, cloud.file);
   if (start) scene.sheets.insert(scene.sheets.begin(), start->sheets.begin(), start->sheets.end());
   SkyBox& box = scene.skyBox;
   for (auto* path : {&box.strip, &box.px, &box.nx, &box.py, &box.ny, &box.pz, &box.nz})

@@ -158,7 +158,8 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
   s.calibration = calibrateClouds(scene, s.weather, noise);
   s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
-  DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter);
+  s.metaballs = std::make_shared<MetaballSky>(scene, s.weather, s.clouds->earthRadiusM());
+  DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter, s.metaballs.get());
   s.cover = std::move(cover.layers);
   s.sheetCover = std::move(cover.sheets);
   s.skyCover = cover.sky;

@@ -11,6 +11,7 @@
 
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
+#include "welkin/scene/metaballs.h"
 #include "welkin/scene/scene.h"
 #include "welkin/sky/atmosphere.h"
 #include "welkin/sky/ephemeris.h"
@@ -57,10 +58,11 @@ struct SkyState {
   std::array<sky::Light, 2> lights;  // as SkyLights
   bool litBySun = true;
   std::shared_ptr<const sky::Atmosphere> atmosphere;
-  std::optional<field::CloudField> clouds;    // always there
-  std::vector<LayerCalibration> calibration;  // a layer each, in the order of weather.layers
-  std::array<ClearSkyKey, 2> clearSky;        // before and after the instant
-  std::optional<ClearSkyKey> clearSkyAhead;   // of another, where it is known: saves time to a move there
+  std::optional<field::CloudField> clouds;       // always there
+  std::shared_ptr<const MetaballSky> metaballs;  // beside them; of all instants
+  std::vector<LayerCalibration> calibration;     // a layer each, in the order of weather.layers
+  std::array<ClearSkyKey, 2> clearSky;           // before and after the instant
+  std::optional<ClearSkyKey> clearSkyAhead;      // of another, where it is known: saves time to a move there
   AmbientLight ambient;
   std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order

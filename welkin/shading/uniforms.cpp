@@ -194,9 +194,10 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
   // A band is a range of heights with the same layers all through: cut at every base and top, so that the
   // foot of a cumulonimbus costs nothing further up.
   std::vector<float> cuts;
-  std::vector<std::size_t> volumes;  // the others are drawn as sheets
+  std::vector<std::size_t> volumes;  // the others are drawn as sheets or metaballs
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    if (scene::isSheet(state.scene, state.weather.layers[i])) continue;
+    const weather::Layer& layer = state.weather.layers[i];
+    if (scene::isSheet(state.scene, layer) || scene::isMetaballs(state.scene, layer)) continue;
     volumes.push_back(i);
     cuts.insert(cuts.end(), {layers[i].baseM, layers[i].topM});
   }

@@ -38,7 +38,8 @@ void describe(Layer& layer, ParamVisitor& v) {
           layer.windFromDeg);
   v.value({"wind_speed_mps", "m/s", "speed of the layer's wind", 0.0, 150.0}, layer.windSpeedMps);
   v.choice({"technique", "",
-            "how the layer is drawn, as a volume or as a thin sheet on a surface; auto or left out: as the "
+            "how the layer is drawn, as a volume, as a thin sheet on a surface or as clouds of metaballs; "
+            "auto or left out: as the "
             "scene's technique says"},
            layer.technique);
 }

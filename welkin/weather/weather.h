@@ -35,7 +35,8 @@ enum class Technique {
   kPlane,   // thin sheets on the surface of that name (scene::SheetSurface)
   kSkyPlane,
   kDome,
-  kOctaves,  // sky planes with living octaves
+  kOctaves,    // sky planes with living octaves
+  kMetaballs,  // clouds of metaballs (scene::MetaballLayer)
 };
 
 // One layer of cloud.
@@ -92,7 +93,7 @@ inline constexpr auto kEnumNames<weather::Genus> = std::array<std::string_view, 
     "altostratus", "cirrus",        "cirrocumulus", "cirrostratus", "fog"};
 template <>
 inline constexpr auto kEnumNames<weather::Technique> =
-    std::array<std::string_view, 6>{"auto", "volume", "plane", "skyplane", "dome", "octaves"};
+    std::array<std::string_view, 7>{"auto", "volume", "plane", "skyplane", "dome", "octaves", "metaballs"};
 template <>
 inline constexpr auto kEnumNames<weather::PrecipitationKind> =
     std::array<std::string_view, 6>{"none", "drizzle", "rain", "snow", "ice_pellets", "hail"};

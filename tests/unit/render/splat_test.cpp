@@ -65,10 +65,11 @@ class SplatTest : public ::testing::Test {
   }
 
   // At heights from the eye's.
-  Image<float> drawn(std::vector<field::Metaball> balls, const SplatLook& look = {}) {
+  Image<float> drawn(std::vector<field::Metaball> balls, SplatPhase phase = SplatPhase::kDroplets) {
     for (field::Metaball& b : balls) b.centreM.z += state.scene.camera.eyeM;
     target.clear();
-    pass.draw(balls, look, view, tables, target);
+    const SplatCloud cloud{balls, phase};
+    pass.draw({&cloud, 1}, view, tables, {target});
     return target.readPicture();
   }
 
@@ -150,7 +151,7 @@ TEST_F(SplatTest, NoBallIsBrighterThanTheLightOnIt) {
   const double lux = luminanceOf(state.lights[0].illuminance);
   for (const double density : {0.001, 0.01, 0.1}) {
     const Image<float> picture =
-        drawn({{{0.0, kDistanceM, 0.0}, 150.0, density}}, {.phase = SplatPhase::kIsotropic});
+        drawn({{{0.0, kDistanceM, 0.0}, 150.0, density}}, SplatPhase::kIsotropic);
     double brightest = 0.0;
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
@@ -179,7 +180,7 @@ TEST_F(SplatTest, ACloudHasALitSideAndADarkOneAndASilverLining) {
       b.centreM = {b.centreM.y * ahead.x - b.centreM.x * ahead.y,
                    b.centreM.y * ahead.y + b.centreM.x * ahead.x, b.centreM.z};
     }
-    const Image<float> picture = drawn(balls, {.phase = phase});
+    const Image<float> picture = drawn(balls, phase);
     double light = 0.0, hidden = 0.0;
     for (int y = kSide * 3 / 8; y < kSide * 5 / 8; ++y)
       for (int x = kSide * 3 / 8; x < kSide * 5 / 8; ++x) {

@@ -135,6 +135,7 @@ TEST(Json, HoldsTheWholeScene) {
   s.metar = "a \"quoted\" text";
   s.layers.resize(2);
   s.sheets.resize(1);
+  s.metaballs.resize(1);
   s.slab.columns.resize(1);
   s.layers[1].oktas = 2.25;
   const auto j = nlohmann::json::parse(toJson(s));

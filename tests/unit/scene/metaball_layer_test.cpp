@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Skies filled with clouds of metaballs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/testing/skies.h"
+#include "welkin/core/parallel.h"
+#include "welkin/scene/cumulus_library.h"
+#include "welkin/scene/metaballs.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::scene {
+namespace {
+
+Scene heaps(double oktas) {
+  Scene s = testing::cloudyScene(50.0, {weather::Genus::kCumulus}, oktas);
+  s.technique = Technique::kMetaballs;
+  return s;
+}
+
+CloudBalls ballsOf(const SkyState& state, double secondsAfter) {
+  CloudBalls balls;
+  state.metaballs->at(secondsAfter, {0.0, 0.0, 2.0}, state.clouds->earthRadiusM(), balls);
+  return balls;
+}
+
+// What there is of a cloud in the box that its map was of.
+double within(const std::vector<field::Metaball>& balls, double height) {
+  const field::MetaballField density(balls);
+  constexpr int kSteps = 40;
+  double sum = 0.0;
+  for (int z = 0; z < kSteps; ++z)
+    for (int y = 0; y < kSteps; ++y)
+      for (int x = 0; x < kSteps; ++x)
+        sum += density({(x + 0.5) / kSteps - 0.5, (y + 0.5) / kSteps - 0.5, height * (z + 0.5) / kSteps});
+  return sum * height / (kSteps * kSteps * kSteps);
+}
+
+// All levels hold the same cloud. (Balls of the coarser ones reach out of the box, where no map holds them.)
+TEST(CumulusLibrary, LevelsAreTheSameCloud) {
+  for (const auto* family : {&cumulusTowers(), &flatCumulus()})
+    for (const LibraryCloud& cloud : *family) {
+      EXPECT_LT(cloud.levels[0].size(), cloud.levels[1].size());
+      EXPECT_LT(cloud.levels[1].size(), cloud.levels[2].size());
+      const double finest = within(cloud.levels.back(), cloud.height);
+      EXPECT_GT(finest, 0.05);
+      for (const auto& level : cloud.levels) EXPECT_NEAR(within(level, cloud.height) / finest, 1.0, 0.15);
+    }
+}
+
+TEST(MetaballLayer, DeliversTheCoverAskedFor) {
+  for (const double oktas : {1.0, 3.0, 6.0}) {
+    const SkyState state = buildSky(heaps(oktas), 0.0);
+    EXPECT_NEAR(state.cover.at(0).deliveredOktas, oktas, 0.4);
+    EXPECT_EQ(state.cover.at(0).requestedOktas, oktas);
+  }
+  EXPECT_TRUE(ballsOf(buildSky(heaps(0.0), 0.0), 0.0).balls.empty());
+}
+
+// Clouds come and go and drift, and the sky stays as cloudy on the whole; any instant is found without
+// others.
+TEST(MetaballLayer, IsAPureFunctionOfTime) {
+  const SkyState state = buildSky(heaps(3.0), 0.0);
+  const SkyState other = buildSky(heaps(3.0), 900.0);
+  const CloudBalls now = ballsOf(state, 0.0), later = ballsOf(state, 900.0);
+  EXPECT_EQ(later.balls, ballsOf(other, 900.0).balls);
+  EXPECT_NE(now.balls, later.balls);
+  EXPECT_NEAR(static_cast<double>(later.clouds.size()) / static_cast<double>(now.clouds.size()), 1.0, 0.15);
+  EXPECT_NEAR(other.cover.at(0).deliveredOktas, 3.0, 1.5);
+}
+
+TEST(MetaballLayer, OnlyHeapsAreMadeOfBalls) {
+  Scene s = testing::cloudyScene(50.0, {weather::Genus::kCumulus, weather::Genus::kCirrus}, 2.0);
+  s.technique = Technique::kMetaballs;
+  const weather::Weather weather = buildSky(s, 0.0).weather;
+  EXPECT_TRUE(isMetaballs(s, weather.layers[0]));
+  EXPECT_FALSE(isMetaballs(s, weather.layers[1]));
+  EXPECT_FALSE(isSheet(s, weather.layers[1]));
+}
+
+}  // namespace
+}  // namespace welkin::scene

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/cumulus_library.h"
+
+#include <cstdint>
+
+#include "welkin/field/cloud_map.h"
+#include "welkin/field/cumulus_tower.h"
+#include "welkin/fit/fit_metaballs.h"
+
+namespace welkin::scene {
+namespace {
+
+constexpr int kShapes = 4;
+constexpr std::array<std::size_t, kLibraryLevels> kBalls = {12, 60, 240};
+constexpr double kWidthM = 1200.0, kVoxelM = 40.0;
+constexpr double kEffort = 0.4;
+
+LibraryCloud made(double heightM, std::int64_t seed) {
+  field::CumulusParams tower;
+  tower.seed = seed;
+  tower.widthM = kWidthM;
+  tower.heightM = heightM;
+  tower.bubbles = 6;
+  const std::vector<field::Ellipsoid> bubbles = field::cumulusTower(tower);
+  const field::CloudMapParams params = field::cumulusMap(tower, kVoxelM);
+  const Volume<float> map = field::cloudMap(params, bubbles);
+  const field::VoxelFrame frame{static_cast<int>(params.nx), static_cast<int>(params.ny),
+                                static_cast<int>(params.nz), glm::dvec3(params.voxelM),
+                                field::firstVoxelM(params)};
+  std::vector<fit::FitLevel> levels;
+  for (const std::size_t count : kBalls) levels.push_back({.count = count, .balls = {}});
+  fit::FitParams how;
+  how.seed = seed;
+  how.effort = kEffort;
+  fit::fitMetaballs(map, frame, how, levels);
+  // The map's mean where there is cloud.
+  double sum = 0.0;
+  std::size_t cloudy = 0;
+  for (const float d : map.data) sum += d, cloudy += d > 0.0f ? 1 : 0;
+  const double mean = sum / static_cast<double>(cloudy);
+  LibraryCloud cloud;
+  cloud.height = heightM / kWidthM;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    cloud.levels[i] = std::move(levels[i].balls);
+    for (field::Metaball& b : cloud.levels[i]) {
+      b.centreM /= kWidthM;
+      b.radiusM /= kWidthM;
+      b.density /= mean;
+    }
+  }
+  return cloud;
+}
+
+std::vector<LibraryCloud> family(double heightM, std::int64_t firstSeed) {
+  std::vector<LibraryCloud> clouds;
+  for (int i = 0; i < kShapes; ++i) clouds.push_back(made(heightM, firstSeed + i));
+  return clouds;
+}
+
+}  // namespace
+
+const std::vector<LibraryCloud>& cumulusTowers() {
+  static const std::vector<LibraryCloud> kTowers = family(0.8 * kWidthM, 1);
+  return kTowers;
+}
+
+const std::vector<LibraryCloud>& flatCumulus() {
+  static const std::vector<LibraryCloud> kFlat = family(0.45 * kWidthM, 101);
+  return kFlat;
+}
+
+}  // namespace welkin::scene

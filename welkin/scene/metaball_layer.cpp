@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/metaball_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "welkin/core/parallel.h"
+#include "welkin/core/random.h"
+#include "welkin/core/units.h"
+#include "welkin/field/cover.h"
+#include "welkin/scene/cumulus_library.h"
+
+namespace welkin::scene {
+namespace {
+
+constexpr double kFlatBelowM = 600.0;  // layers thinner than that have flat clouds
+constexpr double kCellShare = 0.75;    // of the widest cloud
+constexpr double kLeastSize = 0.5;     // of the largest cloud
+constexpr double kReach = 45.0;        // widths of the widest cloud
+constexpr double kLeastReachM = 10000.0, kMostReachM = 45000.0;
+constexpr double kCycleS = 4800.0;  // in which a cell's rank goes up and down once
+constexpr double kYoung = 0.35;     // share of the threshold over which a cloud grows up
+constexpr int kDirections = 1200, kBisections = 12;
+constexpr double kMeasuredM = 2.0;  // height of the eye
+
+double widestM(const weather::Layer& layer, const std::vector<LibraryCloud>& library) {
+  return (layer.topM - layer.baseM) / library[0].height;
+}
+
+const std::vector<LibraryCloud>& libraryOf(bool flat) {
+  return flat ? flatCumulus() : cumulusTowers();
+}
+
+// Through a whole ball, at b radii from its centre: the integral of Wyvill's function
+// (shaders/lib/splat.glsl).
+double column(double b2) {
+  const double w = 1.0 - b2;
+  return w > 0.0 ? w * w * std::sqrt(w) * (16.0 / 27.0 + 128.0 / 315.0 * w) : 0.0;
+}
+
+double smooth(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+}  // namespace
+
+glm::dvec3 overEarth(const glm::dvec3& p, const glm::dvec3& eyeM, double earthRadiusM) {
+  const glm::dvec2 d(p.x - eyeM.x, p.y - eyeM.y);
+  const double along = std::hypot(d.x, d.y), angle = along / earthRadiusM;
+  if (along < 1.0) return p;
+  const double out = (earthRadiusM + p.z) * std::sin(angle), half = std::sin(0.5 * angle);
+  return {eyeM.x + d.x / along * out, eyeM.y + d.y / along * out,
+          p.z - 2.0 * half * half * (earthRadiusM + p.z)};
+}
+
+field::Metaball placed(const field::Metaball& ball, const MetaballLayer::Cloud& cloud) {
+  const double c = std::cos(cloud.turnRad), s = std::sin(cloud.turnRad);
+  const glm::dvec3 p = cloud.widthM * ball.centreM;
+  return {cloud.baseM + glm::dvec3(c * p.x + s * p.y, c * p.y - s * p.x, p.z), cloud.widthM * ball.radiusM,
+          cloud.extinctionPerM * ball.density};
+}
+
+MetaballLayer::MetaballLayer(const weather::Layer& layer, std::uint64_t seed, double earthRadiusM)
+    : layer_(layer), seed_(seed), earthRadiusM_(earthRadiusM), flat_(layer.topM - layer.baseM < kFlatBelowM) {
+  const double widthM = widestM(layer, libraryOf(flat_));
+  cellM_ = kCellShare * widthM;
+  reachM_ = std::clamp(kReach * widthM, kLeastReachM, kMostReachM);
+  if (layer.oktas <= 0.0) return;
+  double low = 0.0, high = 1.0 / (1.0 - kYoung);  // at which every cloud is grown up
+  for (int i = 0; i < kBisections; ++i) {
+    threshold_ = 0.5 * (low + high);
+    const double cover = field::coverOf(opticalDepths(0.0, glm::dvec2(0.0), kDirections));
+    (cover < layer.oktas / 8.0 ? low : high) = threshold_;
+  }
+  threshold_ = high;
+}
+
+const std::vector<field::Metaball>& MetaballLayer::balls(const Cloud& cloud, std::size_t level) const {
+  return libraryOf(flat_)[cloud.shape].levels[level];
+}
+
+void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
+                             std::vector<Cloud>& out) const {
+  out.clear();
+  if (threshold_ <= 0.0) return;
+  const std::vector<LibraryCloud>& library = libraryOf(flat_);
+  const double widthM = widestM(layer_, library);
+  const glm::dvec2 middle = (eyeM - driftedM) / cellM_;
+  const double reach = reachM_ / cellM_;
+  for (auto j = static_cast<std::int64_t>(std::floor(middle.y - reach)); j <= middle.y + reach; ++j)
+    for (auto i = static_cast<std::int64_t>(std::floor(middle.x - reach)); i <= middle.x + reach; ++i) {
+      Random random(hashOf(seed_, 0x6c61, i, j));
+      const double x = static_cast<double>(i) + random.uniform(),
+                   y = static_cast<double>(j) + random.uniform();
+      // Up and down again, at a pace of its own.
+      const double cycles = secondsAfter / kCycleS * (0.7 + 0.6 * random.uniform()) + random.uniform();
+      const double rank = std::abs(2.0 * (cycles - std::floor(cycles)) - 1.0);
+      const double age = (threshold_ - rank) / (kYoung * threshold_);
+      if (age <= 0.0 || std::hypot(x - middle.x, y - middle.y) > reach) continue;
+      Cloud cloud;
+      cloud.baseM = {x * cellM_ + driftedM.x, y * cellM_ + driftedM.y, layer_.baseM};
+      // Many small ones for each large one.
+      const double u = random.uniform();
+      cloud.widthM = widthM * (kLeastSize + (1.0 - kLeastSize) * u * u) * (0.4 + 0.6 * smooth(age));
+      cloud.turnRad = 2.0 * kPi * random.uniform();
+      cloud.shape = random.below(static_cast<std::uint32_t>(library.size()));
+      cloud.extinctionPerM = layer_.extinctionPerM * smooth(3.0 * age);
+      out.push_back(cloud);
+    }
+}
+
+std::vector<float> MetaballLayer::opticalDepths(double secondsAfter, const glm::dvec2& driftedM,
+                                                int directions) const {
+  constexpr std::size_t kLevel = 1;
+  std::vector<Cloud> clouds;
+  cloudsAt(secondsAfter, driftedM, glm::dvec2(0.0), clouds);
+  const glm::dvec3 eye(0.0, 0.0, kMeasuredM);
+  // As they are drawn: over the curved earth.
+  struct Seen {
+    glm::dvec3 middle;
+    double radiusM;
+    std::size_t begin, end;
+  };
+  std::vector<Seen> seen;
+  std::vector<field::Metaball> all;
+  for (const Cloud& cloud : clouds) {
+    const std::size_t begin = all.size();
+    for (const field::Metaball& b : balls(cloud, kLevel)) {
+      all.push_back(placed(b, cloud));
+      all.back().centreM = overEarth(all.back().centreM, eye, earthRadiusM_);
+    }
+    const field::Box box = field::boundsOf(std::span(all).subspan(begin));
+    seen.push_back(
+        {0.5 * (box.low + box.high) - eye, 0.5 * glm::length(box.high - box.low), begin, all.size()});
+  }
+  std::vector<float> depths(static_cast<std::size_t>(directions));
+  parallelFor(depths.size(), 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t d = first; d < last; ++d) {
+      const glm::dvec3 dir(field::hemisphereDirection(static_cast<int>(d), directions));
+      double depth = 0.0;
+      for (const Seen& s : seen) {
+        const double along = glm::dot(s.middle, dir);
+        if (along < -s.radiusM || glm::dot(s.middle, s.middle) - along * along > s.radiusM * s.radiusM)
+          continue;
+        for (std::size_t i = s.begin; i < s.end; ++i) {
+          const field::Metaball& b = all[i];
+          const glm::dvec3 to = b.centreM - eye;
+          const double t = glm::dot(to, dir);
+          if (t > 0.0)
+            depth += b.density * b.radiusM * column((glm::dot(to, to) - t * t) / (b.radiusM * b.radiusM));
+        }
+        if (depth > field::kCoverOpticalDepth) break;
+      }
+      depths[d] = static_cast<float>(depth);
+    }
+  });
+  return depths;
+}
+
+}  // namespace welkin::scene

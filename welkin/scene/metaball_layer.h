@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A layer of the weather as metaballs: clouds of a small library (cumulus_library.h), each turned, sized and
+// placed by hashes of its cell in an endless lattice that drifts with the layer's wind.
+//
+// Every cell has a rank in [0, 1] and the cells whose rank is below a threshold have a cloud, the larger and
+// denser the further below. The threshold is where the sky's measured cover is what was asked for. In time
+// ranks wander evenly up and down, so that clouds grow and decay while as many stay: a pure function of time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "welkin/field/metaballs.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::scene {
+
+class MetaballLayer {
+ public:
+  // Finds the threshold, by bisection, from the ground at the place. Some seconds, the first time.
+  MetaballLayer(const weather::Layer& layer, std::uint64_t seed, double earthRadiusM);
+
+  struct Cloud {
+    glm::dvec3 baseM{0.0};  // the middle of its base: along the ground from the place, and above it
+    double widthM = 1.0, turnRad = 0.0, extinctionPerM = 0.0;
+    std::size_t shape = 0;
+  };
+  // Those within reach of an eye, when the lattice has drifted so far.
+  void cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
+                std::vector<Cloud>& out) const;
+  double reachM() const { return reachM_; }
+  // How far apart the balls of a level are seen as one is theirs to say; the finest level is the last.
+  const std::vector<field::Metaball>& balls(const Cloud& cloud, std::size_t level) const;
+
+  // Optical depths in directions spread evenly over the hemisphere, from the ground at the place.
+  std::vector<float> opticalDepths(double secondsAfter, const glm::dvec2& driftedM, int directions) const;
+
+  const weather::Layer& layer() const { return layer_; }
+
+ private:
+  weather::Layer layer_;
+  std::uint64_t seed_;
+  double earthRadiusM_;
+  bool flat_;
+  double cellM_, reachM_, threshold_ = 0.0;
+};
+
+// From distances along the ground about the eye and height over it to the tangent plane.
+glm::dvec3 overEarth(const glm::dvec3& p, const glm::dvec3& eyeM, double earthRadiusM);
+
+// A cloud's ball in the sky.
+field::Metaball placed(const field::Metaball& ball, const MetaballLayer::Cloud& cloud);
+
+}  // namespace welkin::scene

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clouds of metaballs (field/metaballs.h) in a sky.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "welkin/core/params.h"
+#include "welkin/field/metaballs.h"
+#include "welkin/scene/drift.h"
+#include "welkin/scene/metaball_file.h"
+#include "welkin/scene/metaball_layer.h"
+#include "welkin/weather/weather.h"
+
+namespace welkin::scene {
+
+struct Scene;
+
+// Of the first scattering.
+enum class MetaballPhase { kDroplets, kRayleigh, kIsotropic };
+
+// One by hand: [[metaballs]] of a scene file.
+struct MetaballCloud {
+  std::string file;                           // scene/metaball_file.h
+  glm::dvec3 positionM{0.0, 3000.0, 1000.0};  // of the file's origin: east, north, above the ground
+  double turnDeg = 0.0;                       // clockwise as seen from above
+  double scale = 1.0;
+  double extinctionPerM = 0.05;  // where the file's density is 1
+  double albedo = 1.0;
+  MetaballPhase phase = MetaballPhase::kDroplets;
+  double windFromDeg = 270.0;
+  double windSpeedMps = 0.0;
+  double shearPerS = 0.0;  // m/s of wind more for each metre above its origin
+  double lifeS = 0.0;      // of a ball (field/metaball_motion.h)
+  bool operator==(const MetaballCloud&) const = default;
+};
+void describe(MetaballCloud& c, ParamVisitor& v);
+void validate(const MetaballCloud& c);  // throws ParameterError: no file
+
+// Balls of many clouds at one instant, cloud by cloud, in metres east, north and above the ground about the
+// eye; their densities are extinctions, 1/m.
+struct CloudBalls {
+  struct Cloud {
+    std::size_t end = 0;  // of its balls; they begin where the one before ends
+    MetaballPhase phase = MetaballPhase::kDroplets;
+    float albedo = 1.0f;
+  };
+  std::vector<field::Metaball> balls;
+  std::vector<Cloud> clouds;
+
+  std::span<const field::Metaball> ballsOf(std::size_t cloud) const {
+    const std::size_t begin = cloud == 0 ? 0 : clouds[cloud - 1].end;
+    return std::span(balls).subspan(begin, clouds[cloud].end - begin);
+  }
+};
+
+// All of a scene; what does not depend on the instant. Immutable.
+class MetaballSky {
+ public:
+  MetaballSky() = default;
+  // Reads the files, and fills the layers that are drawn so. Throws what readMetaballs() throws.
+  MetaballSky(const Scene& scene, const weather::Weather& weather, double earthRadiusM);
+
+  bool empty() const { return clouds_.empty() && layers_.empty(); }
+
+  // Of a layer of the weather, by its number there, that is drawn so: optical depths in directions spread
+  // evenly over the hemisphere (field::hemisphereDirection), from the ground at the place.
+  std::vector<float> layerOpticalDepths(std::size_t layer, double secondsAfter, int directions) const;
+
+  // At an instant and as detailed as an eye there sees them, over the curved earth. A pure function of the
+  // arguments; without layers it allocates nothing once `out` has held as many.
+  void at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM, CloudBalls& out) const;
+
+ private:
+  struct Placed {
+    MetaballCloud cloud;
+    std::vector<std::vector<field::Metaball>> levels;  // scaled, turned and placed; the finest last
+    std::vector<double> radiiM;                        // typical of each level
+    glm::dvec3 middleM{0.0};
+  };
+  struct Filled {
+    std::size_t number = 0;  // in the weather
+    MetaballLayer layer;
+  };
+  glm::dvec2 driftOf(const Filled& filled, double secondsAfter) const;
+
+  std::vector<Placed> clouds_;
+  std::vector<Filled> layers_;
+  Drift drift_;
+  std::uint64_t windSeed_ = 0;
+};
+
+}  // namespace welkin::scene
+
+namespace welkin {
+template <>
+inline constexpr auto kEnumNames<scene::MetaballPhase> =
+    std::array<std::string_view, 3>{"droplets", "rayleigh", "isotropic"};
+}  // namespace welkin
