@@ -14,6 +14,7 @@
 #include "bench/frame_bench.h"
 #include "bench/noise_bench.h"
 #include "bench/splat_bench.h"
+#include "bench/truth_bench.h"
 #endif
 
 namespace welkin::app {
@@ -40,7 +41,8 @@ struct Machine {
   unsigned threads = std::thread::hardware_concurrency();
 };
 
-Json noiseJson(bool json) {
+Json noiseJson(const BenchArgs& args) {
+  const bool json = args.json;
   const std::vector<bench::NoiseTime> times = bench::measureNoise(kRepetitions);
   Json all = Json::array();
   if (!json) {
@@ -60,7 +62,8 @@ Json noiseJson(bool json) {
   return {{"median_of", kRepetitions}, {"times", all}};
 }
 
-Json frameJson(bool json) {
+Json frameJson(const BenchArgs& args) {
+  const bool json = args.json;
   const bench::FrameTable table = bench::measureFrames();
   Json all = Json::array();
   if (!json) {
@@ -89,7 +92,8 @@ Json frameJson(bool json) {
           {"times", all}};
 }
 
-Json splatJson(bool json) {
+Json splatJson(const BenchArgs& args) {
+  const bool json = args.json;
   const bench::SplatTable table = bench::measureSplats();
   Json all = Json::array();
   if (!json) {
@@ -108,12 +112,68 @@ Json splatJson(bool json) {
           {"times", all}};
 }
 
+Json truthJson(const BenchArgs& args) {
+  const bench::TruthTable table =
+      bench::measureTruth(args.truth.value_or("bench/truth"), args.pictures.value_or(""));
+  constexpr std::array kNames = {"single", "octaves", "welkin"};
+  const auto rows = static_cast<double>(table.rows.size());
+  std::array<bench::TruthError, 3> mean{}, largest{};
+  std::array<double, 3> cost{};
+  Json all = Json::array();
+  if (!args.json) {
+    fmt::print(
+        "The marched renderer against the truth, on {}: of the pixels, each by the clouds' opacity in it, "
+        "the "
+        "mean relative error of the luminance, bias of the mean luminance, and mean of FLIP\n\n",
+        table.device);
+    fmt::print(
+        "| scene | noise of the truth | single scattering | octaves | Welkin |\n|---|---:|---:|---:|---:|\n");
+  }
+  auto text = [](const bench::TruthError& e) {
+    return fmt::format("{:.1f} % ({:+.1f} %), {:.3f}", 100.0 * e.relative, 100.0 * e.bias, e.flip);
+  };
+  for (const bench::TruthRow& row : table.rows) {
+    Json j = {{"scene", row.scene}, {"noise", row.noise}};
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+      const bench::TruthError& e = row.errors[i];
+      j[kNames[i]] = {{"relative", e.relative}, {"bias", e.bias}, {"flip", e.flip}, {"cpu_s", e.cpuS}};
+      mean[i].relative += e.relative / rows;
+      mean[i].bias += e.bias / rows;
+      mean[i].flip += e.flip / rows;
+      largest[i].relative = std::max(largest[i].relative, e.relative);
+      cost[i] += e.cpuS;
+    }
+    if (!args.json)
+      fmt::print("| {} | {:.1f} % | {} | {} | {} |\n", row.scene, 100.0 * row.noise, text(row.errors[0]),
+                 text(row.errors[1]), text(row.errors[2]));
+    all.push_back(j);
+  }
+  Json summary;
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    summary[kNames[i]] = {{"relative", mean[i].relative},
+                          {"bias", mean[i].bias},
+                          {"flip", mean[i].flip},
+                          {"largest_relative", largest[i].relative},
+                          {"cost_of_octaves", cost[i] / cost[1]}};
+  if (!args.json) {
+    fmt::print("| **mean** | | {} | {} | {} |\n", text(mean[0]), text(mean[1]), text(mean[2]));
+    fmt::print("| **largest** | | {:.1f} % | {:.1f} % | {:.1f} % |\n", 100.0 * largest[0].relative,
+               100.0 * largest[1].relative, 100.0 * largest[2].relative);
+    fmt::print("| **processor time, in the octaves'** | | {:.2f} | 1 | {:.2f} |\n", cost[0] / cost[1],
+               cost[2] / cost[1]);
+  }
+  return {{"device", table.device}, {"scenes", all}, {"summary", summary}};
+}
+
 struct Subject {
   const char* name;
-  Json (*measure)(bool json);
+  Json (*measure)(const BenchArgs& args);
+  bool unasked;  // measured where no name is given
 };
-constexpr std::array<Subject, 3> kSubjects = {
-    {{"noise", noiseJson}, {"frame", frameJson}, {"splat", splatJson}}};
+constexpr std::array<Subject, 4> kSubjects = {{{"noise", noiseJson, true},
+                                               {"frame", frameJson, true},
+                                               {"splat", splatJson, true},
+                                               {"truth", truthJson, false}}};
 
 }  // namespace
 
@@ -124,14 +184,18 @@ int runBench(const BenchArgs& args) {
   for (const std::string& name : args.names)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw UsageError("bench: there is no benchmark \"" + name + "\"" + didYouMean(name, names));
+  if ((args.truth || args.pictures) &&
+      std::find(args.names.begin(), args.names.end(), "truth") == args.names.end())
+    throw UsageError("bench: --truth and --pictures are for truth; expected welkin bench truth");
   const Machine machine;
   Json all = {{"processor", machine.processor}, {"threads", machine.threads}};
   if (!args.json) fmt::print("{}, {} threads\n", machine.processor, machine.threads);
   for (const Subject& s : kSubjects) {
-    if (!args.names.empty() && std::find(args.names.begin(), args.names.end(), s.name) == args.names.end())
+    if (args.names.empty() ? !s.unasked
+                           : std::find(args.names.begin(), args.names.end(), s.name) == args.names.end())
       continue;
     if (!args.json) fmt::print("\n");
-    all[s.name] = s.measure(args.json);
+    all[s.name] = s.measure(args);
   }
   if (args.json) fmt::print("{}\n", all.dump(2));
   return 0;

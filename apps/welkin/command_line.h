@@ -83,6 +83,7 @@ struct CompareArgs {
 
 struct BenchArgs {
   std::vector<std::string> names;
+  Flag truth, pictures;
   bool json = false;
 };
 

@@ -58,3 +58,4 @@ cp "$here/sky_box.toml" "$work/sky_box.toml"
 picture sky_box "$work/sky_box.toml" --size 960x540
 "$here/noise.sh" "$program"
 "$here/metaballs.sh" "$program"
+"$here/truth.sh" "$program"

@@ -28,9 +28,28 @@ struct CloudDepths {
   float down;
 };
 
+// What others use in the place of cloudSunSource() below, to be compared with it (`welkin bench truth`): the first scattering alone;
+// and octaves of it, each with half the extinction, half the light and half the mean cosine of the one before, eight of them as usual:
+// M. Wrenninge, C. Kulla and V. Lundqvist 2013, "Oz: The Great and Volumetric".
+WELKIN_FN float cloudSunSourceSingle(CloudDepths d, float phase) { return phase * exp(-d.toSun); }
+WELKIN_FN float cloudSunSourceOctaves(CloudDepths d, float phase, float cosSun) {
+  float source = phase * exp(-d.toSun);
+  float share = 1.0f;
+  for (int i = 1; i < 8; ++i) {
+    share *= 0.5f;
+    source += share * phaseHenyeyGreenstein(cosSun, share * kDropletAsymmetry) * exp(-share * d.toSun);
+  }
+  return source;
+}
+
 // Scattered radiance per unit extinction and unit sun illuminance, 1/sr. phase: the first scattering's, 1/sr; cosSun: of the
 // angle between the direction of view and the sun; viewHeight, sunHeight: sines of their elevations.
 WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float viewHeight, float sunHeight) {
+#if defined(WELKIN_SINGLE_SCATTERING)
+  return cloudSunSourceSingle(d, phase);
+#elif defined(WELKIN_OCTAVES_OF_SCATTERING)
+  return cloudSunSourceOctaves(d, phase, cosSun);
+#else
   const float pi = 3.14159265f;
   float direct = exp(-d.toSun);
   // Inclination of the light to the slab: as the layer lies where depths agree with it, facing the sun where they do not.
@@ -49,6 +68,7 @@ WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float v
   diffuse *= 1.0f - exp(-kDiffuseOnset * mu * (d.toSun + d.fromSun));
   float forward = kForwardLobe * phaseHenyeyGreenstein(cosSun, kForwardLobeG) * max(beamHere - direct, 0.0f);
   return phase * direct + forward + diffuse;
+#endif
 }
 
 // Shares in [0, 1] of uniform radiance from above (x) and from below (y) that arrive at a point as mean radiance.

@@ -53,9 +53,11 @@ std::vector<gpu::Tile> rowBands(int width, int height) {
 }  // namespace
 
 struct SkyRenderer::Impl {
-  explicit Impl(const RendererOptions& options) : context({.debug = options.debug}) {}
+  explicit Impl(const RendererOptions& options)
+      : context({.debug = options.debug}), cloudLight(options.cloudLight) {}
 
   gpu::Context context;
+  CloudLight cloudLight;
   gpu::FullscreenTriangle triangle;
   ProgramVariants sky{"pass/sky.frag"};
   SkyTextures tables;
@@ -122,6 +124,8 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
+  if (cloudLight == CloudLight::kSingle) defines.emplace_back("WELKIN_SINGLE_SCATTERING", "1");
+  if (cloudLight == CloudLight::kOctaves) defines.emplace_back("WELKIN_OCTAVES_OF_SCATTERING", "1");
   gpu::Program& p = sky.with(defines);
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::skyUniforms(state));

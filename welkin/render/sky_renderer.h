@@ -27,8 +27,13 @@ struct Picture {
 // Called with the fraction done in [0, 1]; may throw to stop (Interrupted).
 using Progress = std::function<void(double fraction)>;
 
+// How light that is scattered more than once in clouds is found: as Welkin does, or, to compare, by the
+// octaves that others use or not at all.
+enum class CloudLight { kFull, kOctaves, kSingle };
+
 struct RendererOptions {
   bool debug = false;  // record what the driver reports as errors; slower on some drivers
+  CloudLight cloudLight = CloudLight::kFull;
 };
 
 // Owns a headless graphics context and everything on it. Not thread-safe: use from the thread that made it,

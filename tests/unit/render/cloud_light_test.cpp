@@ -55,6 +55,25 @@ TEST(CloudLight, IsPositiveAndFiniteWhereverTheSunIs) {
           }
 }
 
+// What it is compared with: over all directions each octave sends out the light that its extinction leaves.
+TEST(CloudLight, OctavesAreHalvesOfHalves) {
+  const CloudDepths clear{0.0f, 0.0f, 0.0f, 0.0f}, deep{6.0f, 6.0f, 6.0f, 6.0f};
+  EXPECT_EQ(cloudSunSourceSingle(clear, 0.3f), 0.3f);
+  EXPECT_NEAR(cloudSunSourceSingle(deep, 0.3f), 0.3f * std::exp(-6.0f), 1e-7f);
+  for (const CloudDepths& d : {clear, deep}) {
+    double sum = 0.0, wanted = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const auto c = static_cast<float>(-1.0 + 2.0 * (i + 0.5) / kSteps);
+      sum += 4.0 * kPi / kSteps *
+             static_cast<double>(cloudSunSourceOctaves(d, phaseHenyeyGreenstein(c, kDropletAsymmetry), c));
+    }
+    for (int i = 0; i < 8; ++i)
+      wanted += std::pow(0.5, i) * std::exp(-std::pow(0.5, i) * static_cast<double>(d.toSun));
+    EXPECT_NEAR(sum, wanted, 1e-3 * wanted);
+  }
+}
+
 // A wisp: the light scattered once, and of the rest what is proportional to the depth.
 TEST(CloudLight, ThinCloudScattersOnce) {
   for (const float c : {-1.0f, 0.0f, 0.7f, 1.0f}) {

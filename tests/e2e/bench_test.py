@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`welkin bench truth`: the table, its pictures, and bad input. Times are nobody's test."""
+import json
+import pathlib
+import shutil
+
+from welkin_program import ProgramTest, main
+
+TRUTH = pathlib.Path(__file__).resolve().parents[2] / "bench" / "truth"
+
+
+class Truth(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "truth").mkdir()
+        for name in ("stratus_overcast.toml", "stratus_overcast.exr"):
+            shutil.copy(TRUTH / name, self.folder / "truth")
+
+    def test_the_table(self):
+        text = self.succeed("bench", "truth", "--truth", "truth", "--json", "--pictures", "strips")
+        truth = json.loads(text)["truth"]
+        (scene,) = truth["scenes"]
+        self.assertEqual(scene["scene"], "stratus_overcast")
+        self.assertLess(scene["noise"], 0.1)
+        self.assertLess(scene["welkin"]["relative"], 0.35)
+        # Nearly all light under an overcast has been scattered many times.
+        self.assertLess(scene["single"]["bias"], -0.4)
+        self.assertGreater(scene["octaves"]["relative"], scene["welkin"]["relative"])
+        for name in ("single", "octaves", "welkin"):
+            self.assertAlmostEqual(truth["summary"][name]["relative"], scene[name]["relative"])
+        self.assertTrue((self.folder / "strips" / "stratus_overcast.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_every_scene_has_its_truth(self):
+        scenes = sorted(p.stem for p in TRUTH.glob("*.toml"))
+        self.assertGreaterEqual(len(scenes), 12)
+        self.assertEqual(scenes, sorted(p.stem for p in TRUTH.glob("*.exr")))
+        for path in TRUTH.glob("*.exr"):
+            self.assertLessEqual(path.stat().st_size, 60 * 1024, path)
+
+    def test_bad_input(self):
+        self.fail_with(2, "expected welkin bench truth", "bench", "noise", "--truth", "truth")
+        self.fail_with(1, "none: no scenes", "bench", "truth", "--truth", "none")
+        (self.folder / "truth" / "stratus_overcast.exr").unlink()
+        self.fail_with(1, "stratus_overcast.exr", "bench", "truth", "--truth", "truth")
+        shutil.copy(TRUTH / "cirrus_towards.exr", self.folder / "truth" / "stratus_overcast.exr")
+        self.fail_with(1, "another size", "bench", "truth", "--truth", "truth")
+
+
+if __name__ == "__main__":
+    main()
