@@ -65,7 +65,6 @@ class Flags(ProgramTest):
         self.refuse("does not fit a cubemap; expected six square faces", "--size", "96x54", "--projection", "cubemap")
 
     def test_renderers(self):
-        self.refuse("the reference renderer traces only slabs in this version", "--renderer", "reference")
         self.refuse("expected gpu or reference", "--renderer", "cpu")
         self.refuse("--spp belongs to the reference renderer", "--spp", "16")
 

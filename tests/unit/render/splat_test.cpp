@@ -150,8 +150,7 @@ TEST_F(SplatTest, AFrameIsTheSameAfterADetour) {
 TEST_F(SplatTest, NoBallIsBrighterThanTheLightOnIt) {
   const double lux = luminanceOf(state.lights[0].illuminance);
   for (const double density : {0.001, 0.01, 0.1}) {
-    const Image<float> picture =
-        drawn({{{0.0, kDistanceM, 0.0}, 150.0, density}}, SplatPhase::kIsotropic);
+    const Image<float> picture = drawn({{{0.0, kDistanceM, 0.0}, 150.0, density}}, SplatPhase::kIsotropic);
     double brightest = 0.0;
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
