@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the picture of metaballs.md anew: metaballs.sh PROGRAM. Needs ImageMagick and Python.
+# Makes the pictures of metaballs.md anew: metaballs.sh PROGRAM. Needs ImageMagick and Python.
 set -euo pipefail
 (($# == 1)) || { echo "usage: metaballs.sh PROGRAM" >&2; exit 2; }
 program="$(readlink -f "$1")"
@@ -49,3 +49,26 @@ for name in map 1000 100 30 man; do
 done
 convert "${columns[@]}" +append -colorspace gray -strip -quality 88 "$here/metaballs.jpg"
 echo "   metaballs.jpg"
+
+# Skies of them, and one cloud before the sun with and without the droplets' phase function.
+cp "$here/metaball_sky.toml" "$here/metaball_lining.toml" .
+picture() { convert "$1" -strip -quality 86 "$here/$2.jpg" && echo "   $2.jpg"; }
+"$program" render metaball_sky.toml --size 960x540 -o noon.png
+picture noon.png metaball_noon
+"$program" render metaball_sky.toml --size 960x540 --time 2026-06-21T19:10:00Z --look 318,10,75 -o sunset.png
+picture sunset.png metaball_sunset
+"$program" cloud --cumulus -o tower.json
+"$program" render metaball_lining.toml --size 480x360 --exposure 16.5 -o droplets.png
+sed 's/"droplets"/"isotropic"/' metaball_lining.toml > isotropic.toml
+"$program" render isotropic.toml --size 480x360 --exposure 16.5 -o isotropic.png
+convert isotropic.png droplets.png +append lining.png
+picture lining.png metaball_lining
+
+# A flight over and through the sky: the eye rises while it turns.
+frames=()
+for i in 0 1 2 3 4 5 6 7; do
+  "$program" render metaball_sky.toml --size 320x200 --at $((60 * i)) --eye $((100 + 350 * i)) --look $((285 + 6 * i)),$((14 - 3 * i)),75 -o "f$i.png"
+  frames+=("f$i.png")
+done
+montage "${frames[@]}" -tile 4x -geometry +2+2 flight.png
+picture flight.png metaball_flight
