@@ -78,6 +78,7 @@ std::vector<int> tracedLayers(const scene::SkyState& state) {
 
 std::vector<bool> iceOf(const scene::SkyState& state) {
   std::vector<bool> ice;
+  ice.reserve(state.weather.layers.size());
   for (const weather::Layer& layer : state.weather.layers) ice.push_back(scene::isIce(layer.genus));
   return ice;
 }

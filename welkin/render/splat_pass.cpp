@@ -210,12 +210,14 @@ void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const 
     const double px = block.x + beside * own.width() + (0.5 + 0.5 * at.x / half) * own.sidePx +
                       -at.x / half;  // the margin: a texel on both sides
     const double py = block.y + (0.5 + 0.5 * at.y / half) * own.sidePx - at.y / half;
-    for (int slice = first; slice < end; ++slice)
-      values_.insert(values_.end(), {static_cast<float>(px + own.sidePx * (slice % own.columns)),
-                                     static_cast<float>(py + own.sidePx * (slice / own.columns)),
-                                     static_cast<float>(at.w * radiusM / texelM), static_cast<float>(depth),
-                                     static_cast<float>((slice * sliceM - z) / radiusM),
-                                     static_cast<float>(((slice + 1) * sliceM - z) / radiusM), 0.0f, 0.0f});
+    for (int slice = first; slice < end; ++slice) {
+      const int column = slice % own.columns, row = slice / own.columns;
+      values_.insert(values_.end(),
+                     {static_cast<float>(px + own.sidePx * column), static_cast<float>(py + own.sidePx * row),
+                      static_cast<float>(at.w * radiusM / texelM), static_cast<float>(depth),
+                      static_cast<float>((slice * sliceM - z) / radiusM),
+                      static_cast<float>(((slice + 1) * sliceM - z) / radiusM), 0.0f, 0.0f});
+    }
   }
 }
 

@@ -28,6 +28,7 @@ LibraryCloud made(double heightM, std::int64_t seed) {
                                 static_cast<int>(params.nz), glm::dvec3(params.voxelM),
                                 field::firstVoxelM(params)};
   std::vector<fit::FitLevel> levels;
+  levels.reserve(kBalls.size());
   for (const std::size_t count : kBalls) levels.push_back({.count = count, .balls = {}});
   fit::FitParams how;
   how.seed = seed;
@@ -53,6 +54,7 @@ LibraryCloud made(double heightM, std::int64_t seed) {
 
 std::vector<LibraryCloud> family(double heightM, std::int64_t firstSeed) {
   std::vector<LibraryCloud> clouds;
+  clouds.reserve(kShapes);
   for (int i = 0; i < kShapes; ++i) clouds.push_back(made(heightM, firstSeed + i));
   return clouds;
 }
