@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
 
+#include "render_settings.h"
 #include "usage_error.h"
+#include "welkin/core/colour.h"
 #include "welkin/core/error.h"
 #include "welkin/io/exr.h"
 #include "welkin/io/hdr.h"
@@ -58,27 +58,12 @@ Image<float> readLinear(const std::string& path, io::ImageFormat format) {
   return coloursOf(picture);
 }
 
-// Of sRGB-encoded values.
-Image<float> linearOf(Image<float> screen) {
-  for (float& v : screen.data) v = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-  return screen;
-}
-
 io::ImageFormat formatOf(const std::string& path) {
   try {
     return io::imageFormatOf(path);
   } catch (const ParameterError& e) {
     throw UsageError("compare: " + std::string(e.what()));
   }
-}
-
-double numberOf(const char* flag, const std::string& text, double low, double high) {
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  if (error != std::errc() || end != text.data() + text.size() || !(x >= low && x <= high))
-    throw UsageError(
-        fmt::format("compare: {}: expected a number from {} to {}, found \"{}\"", flag, low, high, text));
-  return x;
 }
 
 struct Pictures {
@@ -99,13 +84,14 @@ Pictures readBoth(const CompareArgs& args) {
   if (args.exposure && !p.luminance)
     throw UsageError("compare: --exposure is for pictures of luminance, not for .png");
   const bool automatic = !args.exposure || *args.exposure == "auto";
-  if (!automatic) p.exposureEv = numberOf("--exposure", *args.exposure, -20.0, 40.0);
+  if (!automatic) p.exposureEv = numberIn("--exposure", *args.exposure, -20.0, 40.0);
   for (int i = 0; i < 2; ++i) {
     if (p.luminance) {
       p.linear[i] = readLinear(paths[i], formats[i]);
     } else {
       p.screen[i] = readScreen(paths[i]);
-      p.linear[i] = linearOf(p.screen[i]);
+      p.linear[i] = p.screen[i];
+      for (float& v : p.linear[i].data) v = linearOfSrgb(v);
     }
   }
   const Image<float>&a = p.linear[0], &b = p.linear[1];
@@ -132,7 +118,7 @@ void writeMap(const char* flag, const Flag& path, const Image<float>& colours) {
 int runCompare(const CompareArgs& args) {
   if (args.picture.empty() || args.truth.empty())
     throw UsageError("compare: expected two pictures, PICTURE and TRUTH");
-  const double range = args.range ? numberOf("--range", *args.range, 1e-6, 1e6) : 0.5;
+  const double range = args.range ? numberIn("--range", *args.range, 1e-6, 1e6) : 0.5;
   const Pictures p = readBoth(args);
   const reference::PictureError error = reference::errorOf(p.linear[0], p.linear[1]);
   const Image<float> flip = reference::flipOf(p.screen[0], p.screen[1]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_settings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -24,14 +26,6 @@ namespace welkin::app {
 namespace {
 
 using scene::Scene;
-
-double positiveShare(const char* flag, const std::string& text) {
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  if (error != std::errc() || end != text.data() + text.size() || !(x >= 1e-5) || !(x <= 1.0))
-    throw UsageError(std::string(flag) + ": expected a number from 0.00001 to 1, found \"" + text + "\"");
-  return x;
-}
 
 // Scene parameter `path` from the text of a flag.
 void set(Scene& s, const char* flag, std::string_view path, std::string_view text) {
@@ -86,7 +80,7 @@ void setRenderer(RenderSettings& r, const RenderArgs& a) {
       throw UsageError(std::string(flag) +
                        " belongs to the reference renderer; expected --renderer reference");
   if (a.spp) r.spp = wholeNumber("--spp", *a.spp, 1, 2000000000);
-  if (a.noise) r.noise = positiveShare("--noise", *a.noise);
+  if (a.noise) r.noise = numberIn("--noise", *a.noise, 1e-5, 1.0);
   if (a.resume) r.resume = *a.resume;
   if (!a.droplets) return;
   if (*a.droplets != "fit" && *a.droplets != "mie")
@@ -147,6 +141,14 @@ void setOutput(RenderSettings& r, const std::string& out) {
 }
 
 }  // namespace
+
+double numberIn(const char* flag, const std::string& text, double low, double high) {
+  double x = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (error != std::errc() || end != text.data() + text.size() || !(x >= low && x <= high))
+    throw UsageError(fmt::format("{}: expected a number from {} to {}, found \"{}\"", flag, low, high, text));
+  return x;
+}
 
 int wholeNumber(const char* flag, const std::string& text, int low, int high) {
   int n = 0;

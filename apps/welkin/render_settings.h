@@ -29,7 +29,8 @@ struct RenderSettings {
   int threads = 0;  // 0: all
 };
 
-// A whole number from `low` to `high`, and the one that --threads takes. Throw UsageError.
+// A number and a whole number from `low` to `high`, and the one that --threads takes. Throw UsageError.
+double numberIn(const char* flag, const std::string& text, double low, double high);
 int wholeNumber(const char* flag, const std::string& text, int low, int high);
 int threadsOf(const std::string& text);
 

@@ -15,6 +15,7 @@
 #include "lib/sheet_ray.glsl"
 #include "lib/sheet_shadows.glsl"
 #endif
+#include "lib/dither.glsl"
 #include "lib/march.glsl"
 
 float groundSunlight(vec2 q) { return 1.0; }  // of no ground
@@ -31,9 +32,6 @@ uniform vec2 uJitterStep;         // along the ray and towards the sun, [0, 1)
 
 layout(location = 0) out vec4 outCloud;   // luminance that arrives, air and all; w: the share of what is behind that arrives too
 layout(location = 1) out vec4 outDepth;   // x: distance of what is seen, m; 0: nothing is
-
-// Interleaved gradient noise (J. Jimenez 2014): neighbours differ as much as they can.
-float interleavedNoise(vec2 px) { return fract(52.9829189 * fract(dot(px, vec2(0.06711056, 0.00583715)))); }
 
 void main() {
   vec2 block = floor(gl_FragCoord.xy);

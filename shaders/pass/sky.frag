@@ -20,6 +20,7 @@
 #ifdef WELKIN_SPLATS
 #include "lib/splat_layer.glsl"
 #endif
+#include "lib/dither.glsl"
 #include "lib/march.glsl"
 
 float groundSunlight(vec2 q) {
@@ -40,9 +41,6 @@ uniform vec2 uJitterPx;           // of this sub-frame within the pixel
 uniform vec2 uJitterStep;         // of this sub-frame along the ray and towards the sun, [0, 1)
 
 layout(location = 0) out vec4 outColor;
-
-// Interleaved gradient noise (J. Jimenez 2014): neighbours differ as much as they can.
-float interleavedNoise(vec2 px) { return fract(52.9829189 * fract(dot(px, vec2(0.06711056, 0.00583715)))); }
 
 void main() {
   vec2 px = vec2(gl_FragCoord.x, uProjector.sizePx.y - gl_FragCoord.y);

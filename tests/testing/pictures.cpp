@@ -58,6 +58,16 @@ Difference difference(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b
   return {sum / static_cast<double>(steps.size()), static_cast<double>(*nth)};
 }
 
+double relativeDifference(const Image<float>& a, const Image<float>& b) {
+  double sum = 0.0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const double l = luminanceOf(pixel(a, x, y)), m = luminanceOf(pixel(b, x, y));
+      sum += std::abs(l - m) / (0.5 * (l + m));
+    }
+  return sum / (a.width * a.height);
+}
+
 glm::vec3 horizontalIlluminance(const Image<float>& equirect) {
   glm::dvec3 sum(0.0);
   for (int y = 0; y < equirect.height / 2; ++y) {

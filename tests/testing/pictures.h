@@ -31,6 +31,9 @@ struct Difference {
 };
 Difference difference(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b);
 
+// Mean of the differences of luminance, relative to the mean of both, of two pictures of one size.
+double relativeDifference(const Image<float>& a, const Image<float>& b);
+
 // Illuminance in lux, Rec. 709 triple, of a horizontal plane facing up by an equirectangular picture of
 // luminance whose top row is the zenith. Each pixel stands for the luminance of all of its solid angle.
 glm::vec3 horizontalIlluminance(const Image<float>& equirect);

@@ -29,6 +29,15 @@ double integralOf(std::span<const Metaball> balls) {
   return kWyvillIntegral * sum;
 }
 
+double medianRadiusOf(std::span<const Metaball> balls) {
+  std::vector<double> radii;
+  radii.reserve(balls.size());
+  for (const Metaball& b : balls) radii.push_back(b.radiusM);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return *middle;
+}
+
 Box boundsOf(std::span<const Metaball> balls) {
   if (balls.empty()) return {glm::dvec3(0.0), glm::dvec3(0.0)};
   Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};

@@ -43,6 +43,8 @@ constexpr double kWyvillIntegral = 736.0 * std::numbers::pi / 2835.0;
 
 // The integral of the field over all space: density times m^3.
 double integralOf(std::span<const Metaball> balls);
+// The middle one of their radii; there must be some.
+double medianRadiusOf(std::span<const Metaball> balls);
 
 // The box around all of them; both corners 0 if there are none.
 Box boundsOf(std::span<const Metaball> balls);

@@ -252,25 +252,43 @@ class InStream : public Imf::IStream {
 
 // Rows are read and appended chunk by chunk, so that a header that promises more than the file has gets no
 // further than the file goes.
+// Calls f(first, last) for some rows at a time, from the top.
+template <class F>
+void inChunks(const Imath::Box2i& window, F&& f) {
+  for (int y = window.min.y; y <= window.max.y; y += kRowsAtOnce)
+    f(y, std::min(y + kRowsAtOnce - 1, window.max.y));
+}
+
+// OpenEXR counts from pixel (0, 0), which need not be in the rows at hand; pointers outside an array are not
+// to be formed, so the sum is done on integers. offset: of the first value at hand.
+template <class T>
+char* originOf(std::vector<T>& rows, std::int64_t offset) {
+  return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(rows.data()) -
+                                 static_cast<std::uintptr_t>(offset) * sizeof(T));
+}
+
+std::map<std::string, std::string> textsOf(const Imf::Header& header) {
+  std::map<std::string, std::string> texts;
+  for (auto it = header.begin(); it != header.end(); ++it)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+      texts.emplace(it.name(), text->value());
+  return texts;
+}
+
 template <class T>
 void readRows(Imf::InputFile& in, Imf::PixelType type, const Imath::Box2i& window, int channels,
               std::vector<std::byte>& bytes) {
   const int width = window.max.x - window.min.x + 1;
   const std::size_t rowValues = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
   std::vector<T> rows;
-  for (int y = window.min.y; y <= window.max.y; y += kRowsAtOnce) {
-    const int last = std::min(y + kRowsAtOnce - 1, window.max.y);
+  inChunks(window, [&](int y, int last) {
     rows.resize(rowValues * static_cast<std::size_t>(last - y + 1));
-    // OpenEXR counts from pixel (0, 0), which need not be in the rows at hand; pointers outside an array are
-    // not to be formed, so the sum is done on integers.
-    const std::int64_t offset = (std::int64_t{y} * width + window.min.x) * channels;
-    T* origin = reinterpret_cast<T*>(reinterpret_cast<std::uintptr_t>(rows.data()) -
-                                     static_cast<std::uintptr_t>(offset) * sizeof(T));
+    T* origin = reinterpret_cast<T*>(originOf(rows, (std::int64_t{y} * width + window.min.x) * channels));
     in.setFrameBuffer(frameBuffer(origin, type, width, channels));
     in.readPixels(y, last);
     const auto* begin = reinterpret_cast<const std::byte*>(rows.data());
     bytes.insert(bytes.end(), begin, begin + rows.size() * sizeof(T));
-  }
+  });
 }
 
 }  // namespace
@@ -300,9 +318,7 @@ Texels readExrTexels(const std::filesystem::path& path) {
       readRows<half>(in, Imf::HALF, window, channels, texels.bytes);
     else
       readRows<float>(in, Imf::FLOAT, window, channels, texels.bytes);
-    for (auto it = header.begin(); it != header.end(); ++it)
-      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
-        texels.notes.metadata.emplace(it.name(), text->value());
+    texels.notes.metadata = textsOf(header);
     return texels;
   } catch (const Error&) {
     throw;
@@ -340,23 +356,18 @@ ExrPlanes readExrPlanes(const std::filesystem::path& path) {
     // A plane at a time, each in chunks of rows as they come.
     for (auto& [name, values] : p.planes) {
       std::vector<float> rows;
-      for (int y = window.min.y; y <= window.max.y; y += kRowsAtOnce) {
-        const int last = std::min(y + kRowsAtOnce - 1, window.max.y);
+      inChunks(window, [&](int y, int last) {
         rows.resize(static_cast<std::size_t>(p.width) * static_cast<std::size_t>(last - y + 1));
-        const std::int64_t offset = std::int64_t{y} * p.width + window.min.x;
-        auto* origin = reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(rows.data()) -
-                                               static_cast<std::uintptr_t>(offset) * sizeof(float));
+        char* origin = originOf(rows, std::int64_t{y} * p.width + window.min.x);
         Imf::FrameBuffer buffer;
         buffer.insert(name, Imf::Slice(Imf::FLOAT, origin, sizeof(float),
                                        sizeof(float) * static_cast<std::size_t>(p.width)));
         in.setFrameBuffer(buffer);
         in.readPixels(y, last);
         values.insert(values.end(), rows.begin(), rows.end());
-      }
+      });
     }
-    for (auto it = header.begin(); it != header.end(); ++it)
-      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
-        p.metadata.emplace(it.name(), text->value());
+    p.metadata = textsOf(header);
     return p;
   } catch (const Error&) {
     throw;

@@ -28,12 +28,8 @@ Interval united(Interval a, Interval b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
-float smooth(float a, float b, float x) {
-  const float t = std::clamp((x - a) / (b - a), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-Interval smooth(float a, float b, Interval x) {
-  return {smooth(a, b, x.low), smooth(a, b, x.high)};
+Interval smoothstep(float a, float b, Interval x) {
+  return {glm::smoothstep(a, b, x.low), glm::smoothstep(a, b, x.high)};
 }
 
 // Along and across a direction.
@@ -140,7 +136,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval towardsBase{1.0f - h.high, 1.0f - h.low};
   const Interval belly =
       l.belly * Interval{towardsBase.low * towardsBase.low, towardsBase.high * towardsBase.high};
-  const Interval anvil = l.anvil * smooth(0.62f, 0.88f, h);
+  const Interval anvil = l.anvil * smoothstep(0.62f, 0.88f, h);
   const Interval profile = dome + belly + -1.0f * anvil;
   const float slack = kRounding * (1.0f + std::abs(l.threshold));
   Interval s = shifted(placement, -l.threshold) + -1.0f * profile;
@@ -148,8 +144,8 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
 
   // cloudShapeAmount, cloudClearance.
   auto amount = [&](float surface, float height) {
-    const float byHeight = l.shapeAtBase + (1.0f - l.shapeAtBase) * smooth(0.0f, 0.35f, height);
-    return l.shapeAmount * byHeight * smooth(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, surface);
+    const float byHeight = l.shapeAtBase + (1.0f - l.shapeAtBase) * glm::smoothstep(0.0f, 0.35f, height);
+    return l.shapeAmount * byHeight * glm::smoothstep(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, surface);
   };
   const bool risesUp = l.shapeAtBase <= 1.0f;
   const Interval amounts = l.shapeAmount > 0.0f ? Interval{amount(s.low, risesUp ? h.low : h.high),
@@ -167,16 +163,17 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
   if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};
   if (l.detailAmount > 0.0f && s.low < l.edge + 2.0f * l.detailAmount) {
-    const Interval byHeight =
-        shifted((1.0f - l.shapeAtBase) * Interval{smooth(0.0f, 0.2f, h.low), smooth(0.0f, 0.2f, h.high)},
-                l.shapeAtBase);
+    const Interval byHeight = shifted((1.0f - l.shapeAtBase) * Interval{glm::smoothstep(0.0f, 0.2f, h.low),
+                                                                        glm::smoothstep(0.0f, 0.2f, h.high)},
+                                      l.shapeAtBase);
     const Interval detail = l.detailAmount * (byHeight * over(detail_, l.detailShiftM, l.detailM));
     s = s + Interval{std::min(detail.low, 0.0f), std::max(detail.high, 0.0f)};  // may be left out
   }
   s = {s.low - slack, s.high + slack};
   if (s.high <= 0.0f) return {};
   const float body = std::clamp(s.high / l.edge, 0.0f, 1.0f);
-  const float vertical = smooth(0.0f, l.bottomSoft, h.high) * smooth(0.0f, l.topSoft, 1.0f - h.low);
+  const float vertical =
+      glm::smoothstep(0.0f, l.bottomSoft, h.high) * glm::smoothstep(0.0f, l.topSoft, 1.0f - h.low);
   auto lift = [&](float height) { return 1.0f + (0.4f + 0.9f * std::sqrt(height) - 1.0f) * l.lift; };
   const float highest = l.extinction * body * vertical * std::max(lift(h.low), lift(h.high));
   return {highest * (1.0f + kRounding), s.low >= l.edge};

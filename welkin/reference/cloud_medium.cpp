@@ -101,8 +101,8 @@ void CloudMedium::walk(const Ray& ray, double end, F&& f) const {
   }
 }
 
-std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, double end, Random& random) const {
-  std::optional<Collision> collision;
+template <class F>
+void CloudMedium::track(const Ray& ray, double end, Random& random, F&& f) const {
   double depth = freeDepth(random);
   walk(ray, end, [&](const MajorantGrid::Brick& brick, double t0, double t1) {
     const double majorant = brick.majorant;
@@ -114,40 +114,29 @@ std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, doubl
       }
       t0 += step;
       depth = freeDepth(random);
-      const Point point = pointIn(brick, ray.at(t0));
-      const double u = unit(random) * majorant;
-      if (u < static_cast<double>(point.extinction)) {
-        collision = {t0, u < static_cast<double>(point.ice)};
-        return true;
-      }
+      if (f(t0, majorant, pointIn(brick, ray.at(t0)))) return true;
     }
+  });
+}
+
+std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, double end, Random& random) const {
+  std::optional<Collision> collision;
+  track(ray, end, random, [&](double t, double majorant, const Point& point) {
+    const double u = unit(random) * majorant;
+    if (u >= static_cast<double>(point.extinction)) return false;
+    collision = {t, u < static_cast<double>(point.ice)};
+    return true;
   });
   return collision;
 }
 
 double CloudMedium::transmittance(const Ray& ray, double end, Random& random) const {
   double through = 1.0;
-  double depth = freeDepth(random);
-  walk(ray, end, [&](const MajorantGrid::Brick& brick, double t0, double t1) {
-    const double majorant = brick.majorant;
-    for (;;) {
-      const double step = depth / majorant;
-      if (t0 + step >= t1) {
-        depth -= (t1 - t0) * majorant;
-        return false;
-      }
-      t0 += step;
-      depth = freeDepth(random);
-      const Point point = pointIn(brick, ray.at(t0));
-      through *= std::max(1.0 - static_cast<double>(point.extinction) / majorant, 0.0);
-      if (through < kRouletteBelow) {
-        if (unit(random) * kRouletteTo >= through) {
-          through = 0.0;
-          return true;
-        }
-        through = kRouletteTo;
-      }
-    }
+  track(ray, end, random, [&](double, double majorant, const Point& point) {
+    through *= std::max(1.0 - static_cast<double>(point.extinction) / majorant, 0.0);
+    if (through >= kRouletteBelow) return false;
+    through = unit(random) * kRouletteTo < through ? kRouletteTo : 0.0;
+    return through == 0.0;
   });
   return through;
 }

@@ -47,6 +47,10 @@ class CloudMedium {
   template <class F>
   void walk(const Ray& ray, double end, F&& f) const;
 
+  // Calls f(t, majorant, point) at tentative collisions along [0, end), until it returns true.
+  template <class F>
+  void track(const Ray& ray, double end, Random& random, F&& f) const;
+
   const field::CloudField& field_;
   std::vector<bool> ice_;
   Sphere earth_;

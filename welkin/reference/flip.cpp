@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -14,6 +13,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/units.h"
 
@@ -32,10 +32,7 @@ const glm::dvec3 kWhite = kXyzFromRgb * glm::dvec3(1.0);
 
 glm::dvec3 linearOf(const float* srgb) {
   glm::dvec3 rgb;
-  for (int c = 0; c < 3; ++c) {
-    const double s = std::clamp(static_cast<double>(srgb[c]), 0.0, 1.0);
-    rgb[c] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-  }
+  for (int c = 0; c < 3; ++c) rgb[c] = linearOfSrgb(std::clamp(static_cast<double>(srgb[c]), 0.0, 1.0));
   return rgb;
 }
 
@@ -130,7 +127,8 @@ Plane seenAlong(const Plane& in, std::size_t axis, double pixelsPerDegree) {
 }
 
 // Calls body(i) for the index of each pixel.
-void forPixels(std::size_t count, const std::function<void(std::size_t)>& body) {
+template <class Body>
+void forPixels(std::size_t count, const Body& body) {
   parallelFor(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });

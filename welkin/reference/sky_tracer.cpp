@@ -66,10 +66,15 @@ std::vector<int> tracedLayers(const scene::SkyState& state) {
     throw ParameterError(who + "[[sheet]]s; expected a scene of volumes, or the renderer gpu");
   if (!state.scene.skyBox.empty())
     throw ParameterError(who + "a [sky_box]; expected a scene without one, or the renderer gpu");
+  if (!state.scene.metaballs.empty())
+    throw ParameterError(who + "[[metaballs]]; expected a scene without them, or the renderer gpu");
   std::vector<int> layers;
   for (std::size_t i = 0; i < state.weather.layers.size(); ++i) {
     if (scene::isSheet(state.scene, state.weather.layers[i]))
       throw ParameterError(who + "layers drawn as thin sheets (layer " + std::to_string(i + 1) +
+                           "); expected the technique volume, or the renderer gpu");
+    if (scene::isMetaballs(state.scene, state.weather.layers[i]))
+      throw ParameterError(who + "layers made of metaballs (layer " + std::to_string(i + 1) +
                            "); expected the technique volume, or the renderer gpu");
     layers.push_back(static_cast<int>(i));
   }

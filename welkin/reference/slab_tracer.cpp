@@ -13,6 +13,7 @@
 #include "welkin/core/units.h"
 #include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
+#include "welkin/reference/directions.h"
 #include "welkin/reference/phase_sampler.h"
 
 namespace welkin::reference {
@@ -31,10 +32,6 @@ constexpr double kOpaque = 80.0;  // an optical depth through which 2e-35 of the
 
 enum Quantity { kUp, kDownDirect, kDownDiffuse, kAbsorbed, kNadir, kQuantities };
 using Sums = std::vector<std::array<double, kQuantities>>;  // by column
-
-double unit(Random& random) {
-  return static_cast<double>(random.next() >> 11) * 0x1p-53;
-}
 
 // The numbers of one path: a point of a shifted lattice, then random ones.
 class PathNumbers {
@@ -76,16 +73,6 @@ PhaseSampler phaseOf(const scene::Slab& slab) {
       break;
   }
   return PhaseSampler::henyeyGreenstein(slab.asymmetry);
-}
-
-// `w` turned by the angle whose cosine is given, about itself by phi.
-glm::dvec3 turned(const glm::dvec3& w, double cosine, double phi) {
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-  // An orthonormal basis without a branch: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-  const double sign = std::copysign(1.0, w.z);
-  const double a = -1.0 / (sign + w.z), b = w.x * w.y * a;
-  const glm::dvec3 s(1.0 + sign * w.x * w.x * a, sign * b, -sign * w.x), t(b, sign + w.y * w.y * a, -w.y);
-  return glm::normalize(sine * std::cos(phi) * s + sine * std::sin(phi) * t + cosine * w);
 }
 
 class SlabTracer {

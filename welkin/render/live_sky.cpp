@@ -123,6 +123,10 @@ void LiveSky::update(const scene::SkyState& state) {
 
 void LiveSky::Impl::change(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
+  if (!next.scene.metaballs.empty() ||
+      std::ranges::any_of(next.weather.layers,
+                          [&](const weather::Layer& layer) { return scene::isMetaballs(next.scene, layer); }))
+    throw ParameterError("a live sky draws no metaballs; expected another technique, and no [[metaballs]]");
   const bool volumesThere = std::ranges::any_of(
       next.weather.layers, [&](const weather::Layer& layer) { return !scene::isSheet(next.scene, layer); });
   if (!same) updateBox(next.scene.skyBox, volumesThere);  // first, as its files may be missing

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sky of thin clouds inside somebody's frame loop:
+// A sky inside somebody's frame loop, thin sheets and marched volumes:
 //
 //   LiveSky sky;                                    // with the engine's context current
 //   every frame:  sky.update(scene, seconds);
 //                 for each view: sky.draw(view, {framebuffer, {0, 0, width, height}});
 //
 // No global state: several skies, several views a frame, several contexts may live side by side. What is
-// drawn depends on the scene, the seconds and the view alone, never on what was drawn before. The engine's
-// OpenGL state is as it was after every call. After the first two updates of a scene and a draw nothing is
-// compiled, no OpenGL object is made and no memory is allocated, and while time runs on no update takes much
-// longer than others. Belongs to the context that was current when it was made; not thread-safe.
+// drawn depends on the scene, the seconds and the view alone, never on what was drawn before; with volumes,
+// it comes to that within some frames (render/live_volumes.h). The engine's OpenGL state is as it was after
+// every call. After the first two updates of a scene and a draw nothing is compiled, no OpenGL object is made
+// and no memory is allocated, and while time runs on no update takes much longer than others. Belongs to the
+// context that was current when it was made; not thread-safe.
 #pragma once
 
 #include <memory>
@@ -38,9 +39,8 @@ class LiveSky {
   LiveSky(const LiveSky&) = delete;
   LiveSky& operator=(const LiveSky&) = delete;
 
-  // The sky `secondsAfter` the scene's time. Its sheets are the scene's, and its layers of cloud as sheets on
-  // the surface that the scene's technique names (auto: the sky plane). Throws as buildSky does, and
-  // ParameterError where a layer's technique is volume.
+  // The sky `secondsAfter` the scene's time. Its layers are drawn as their techniques say (auto: as
+  // volumes). Throws as buildSky does, and ParameterError for metaballs, which it does not draw.
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);

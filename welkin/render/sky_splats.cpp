@@ -6,8 +6,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
+#include "welkin/scene/projector.h"
 
 namespace welkin::render {
 namespace {
@@ -33,15 +33,11 @@ std::array<Face, 6> cubeFaces(int sidePx) {
 }
 
 Face pictureFace(const scene::SkyState& state) {
-  const scene::Camera& camera = state.scene.camera;
-  const double heading = radians(state.headingDeg), pitch = radians(camera.pitchDeg);
-  const glm::dvec3 right(std::cos(heading), -std::sin(heading), 0.0);
-  const glm::dvec3 ahead(std::sin(heading) * std::cos(pitch), std::cos(heading) * std::cos(pitch),
-                         std::sin(pitch));
-  const double tan = std::tan(0.5 * radians(camera.fovDeg));
-  const scene::Output& output = state.scene.output;
-  return {right, glm::cross(right, ahead), ahead, tan,
-          tan * static_cast<double>(output.height) / static_cast<double>(output.width)};
+  const scene::Projector p = scene::projectorOf(state);
+  const glm::dmat3 enuFromCamera(p.enuFromCamera);
+  const double tan = static_cast<double>(p.halfWidthTan);
+  return {enuFromCamera[0], enuFromCamera[2], enuFromCamera[1], tan,
+          tan * static_cast<double>(p.sizePx.y / p.sizePx.x)};
 }
 
 shading::View viewOf(const Face& face, double eyeM) {

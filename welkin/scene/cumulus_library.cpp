@@ -48,6 +48,7 @@ LibraryCloud made(double heightM, std::int64_t seed) {
       b.radiusM /= kWidthM;
       b.density /= mean;
     }
+    cloud.radii[i] = field::medianRadiusOf(cloud.levels[i]);
   }
   return cloud;
 }

@@ -15,6 +15,7 @@ inline constexpr std::size_t kLibraryLevels = 3;
 struct LibraryCloud {
   // As wide as 1, on the plane z = 0, in the middle of it; density about 1 inside. Fewest balls first.
   std::array<std::vector<field::Metaball>, kLibraryLevels> levels;
+  std::array<double, kLibraryLevels> radii{};  // the median of each level's balls
   double height = 1.0;
 };
 

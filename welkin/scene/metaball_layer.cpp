@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "welkin/core/glsl.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
@@ -32,17 +34,9 @@ const std::vector<LibraryCloud>& libraryOf(bool flat) {
   return flat ? flatCumulus() : cumulusTowers();
 }
 
-// Through a whole ball, at b radii from its centre: the integral of Wyvill's function
-// (shaders/lib/splat.glsl).
-double column(double b2) {
-  const double w = 1.0 - b2;
-  return w > 0.0 ? w * w * std::sqrt(w) * (16.0 / 27.0 + 128.0 / 315.0 * w) : 0.0;
-}
-
-double smooth(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
+// Shared with the GPU.
+using namespace welkin::glsl;
+#include "shaders/lib/splat.glsl"
 
 }  // namespace
 
@@ -77,8 +71,8 @@ MetaballLayer::MetaballLayer(const weather::Layer& layer, std::uint64_t seed, do
   threshold_ = high;
 }
 
-const std::vector<field::Metaball>& MetaballLayer::balls(const Cloud& cloud, std::size_t level) const {
-  return libraryOf(flat_)[cloud.shape].levels[level];
+const LibraryCloud& MetaballLayer::shape(const Cloud& cloud) const {
+  return libraryOf(flat_)[cloud.shape];
 }
 
 void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
@@ -103,10 +97,11 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
       cloud.baseM = {x * cellM_ + driftedM.x, y * cellM_ + driftedM.y, layer_.baseM};
       // Many small ones for each large one.
       const double u = random.uniform();
-      cloud.widthM = widthM * (kLeastSize + (1.0 - kLeastSize) * u * u) * (0.4 + 0.6 * smooth(age));
+      cloud.widthM =
+          widthM * (kLeastSize + (1.0 - kLeastSize) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
       cloud.turnRad = 2.0 * kPi * random.uniform();
       cloud.shape = random.below(static_cast<std::uint32_t>(library.size()));
-      cloud.extinctionPerM = layer_.extinctionPerM * smooth(3.0 * age);
+      cloud.extinctionPerM = layer_.extinctionPerM * glm::smoothstep(0.0, 1.0, 3.0 * age);
       out.push_back(cloud);
     }
 }
@@ -127,7 +122,7 @@ std::vector<float> MetaballLayer::opticalDepths(double secondsAfter, const glm::
   std::vector<field::Metaball> all;
   for (const Cloud& cloud : clouds) {
     const std::size_t begin = all.size();
-    for (const field::Metaball& b : balls(cloud, kLevel)) {
+    for (const field::Metaball& b : shape(cloud).levels[kLevel]) {
       all.push_back(placed(b, cloud));
       all.back().centreM = overEarth(all.back().centreM, eye, earthRadiusM_);
     }
@@ -149,7 +144,10 @@ std::vector<float> MetaballLayer::opticalDepths(double secondsAfter, const glm::
           const glm::dvec3 to = b.centreM - eye;
           const double t = glm::dot(to, dir);
           if (t > 0.0)
-            depth += b.density * b.radiusM * column((glm::dot(to, to) - t * t) / (b.radiusM * b.radiusM));
+            depth +=
+                b.density * b.radiusM *
+                static_cast<double>(splatColumn(
+                    static_cast<float>((glm::dot(to, to) - t * t) / (b.radiusM * b.radiusM)), -1.0f, 1.0f));
         }
         if (depth > field::kCoverOpticalDepth) break;
       }

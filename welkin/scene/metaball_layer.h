@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "welkin/field/metaballs.h"
+#include "welkin/scene/cumulus_library.h"
 #include "welkin/weather/weather.h"
 
 namespace welkin::scene {
@@ -28,9 +29,8 @@ class MetaballLayer {
   // Those within reach of an eye, when the lattice has drifted so far.
   void cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
                 std::vector<Cloud>& out) const;
-  double reachM() const { return reachM_; }
-  // How far apart the balls of a level are seen as one is theirs to say; the finest level is the last.
-  const std::vector<field::Metaball>& balls(const Cloud& cloud, std::size_t level) const;
+  // What it is made of.
+  const LibraryCloud& shape(const Cloud& cloud) const;
 
   // Optical depths in directions spread evenly over the hemisphere, from the ground at the place.
   std::vector<float> opticalDepths(double secondsAfter, const glm::dvec2& driftedM, int directions) const;

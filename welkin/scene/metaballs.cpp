@@ -19,13 +19,6 @@ namespace {
 constexpr double kBallRad = 0.003;
 constexpr double kLayerBallRad = 0.008;  // of a layer's, which are many
 
-double typicalRadius(std::vector<field::Metaball> balls) {
-  const auto middle = balls.begin() + static_cast<std::ptrdiff_t>(balls.size() / 2);
-  std::nth_element(balls.begin(), middle, balls.end(),
-                   [](const auto& a, const auto& b) { return a.radiusM < b.radiusM; });
-  return middle->radiusM;
-}
-
 }  // namespace
 
 void describe(MetaballCloud& c, ParamVisitor& v) {
@@ -69,7 +62,7 @@ MetaballSky::MetaballSky(const Scene& scene, const weather::Weather& weather, do
         b.radiusM *= cloud.scale;
         b.density *= cloud.extinctionPerM;
       }
-      placed.radiiM.push_back(typicalRadius(level.balls));
+      placed.radiiM.push_back(field::medianRadiusOf(level.balls));
       placed.levels.push_back(std::move(level.balls));
     }
     const field::Box box = field::boundsOf(placed.levels.back());
@@ -124,9 +117,9 @@ void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRa
       const double distanceM = glm::length(cloud.baseM - eyeM);
       std::size_t level = 0;
       while (level + 1 < kLibraryLevels &&
-             typicalRadius(filled.layer.balls(cloud, level)) * cloud.widthM > kLayerBallRad * distanceM)
+             filled.layer.shape(cloud).radii[level] * cloud.widthM > kLayerBallRad * distanceM)
         ++level;
-      for (const field::Metaball& b : filled.layer.balls(cloud, level)) {
+      for (const field::Metaball& b : filled.layer.shape(cloud).levels[level]) {
         out.balls.push_back(placed(b, cloud));
         out.balls.back().centreM = overEarth(out.balls.back().centreM, eyeM, earthRadiusM);
       }

@@ -6,16 +6,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/error.h"
 #include "welkin/io/texel_file.h"
 
 namespace welkin::scene {
 namespace {
-
-// IEC 61966-2-1.
-float linearOf(float srgb) {
-  return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
-}
 
 Image<float> luminanceIn(const std::string& path, double whiteCdM2) {
   const io::Texels texels = [&] {
@@ -36,7 +32,7 @@ Image<float> luminanceIn(const std::string& path, double whiteCdM2) {
   for (std::size_t i = 0; i < out.data.size() / 3; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
       const float x = values[i * static_cast<std::size_t>(channels) + (channels >= 3 ? c : 0)];
-      out.data[3 * i + c] = display ? static_cast<float>(whiteCdM2) * linearOf(x) : std::max(x, 0.0f);
+      out.data[3 * i + c] = display ? static_cast<float>(whiteCdM2) * linearOfSrgb(x) : std::max(x, 0.0f);
     }
   return out;
 }

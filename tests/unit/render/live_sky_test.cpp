@@ -11,6 +11,7 @@
 #include "tests/testing/foreign_engine.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
 #include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
@@ -215,6 +216,17 @@ scene::Scene marchedScene() {
   s.output.width = 64;
   s.output.height = 36;
   return s;
+}
+
+// What it does not draw is said, and what was there stays.
+TEST_F(LiveSkyTest, RefusesMetaballs) {
+  LiveSky sky;
+  sky.update(thinScene(), 0.0);
+  const Image<float> before = drawn(sky);
+  scene::Scene s = cloudyScene(35.0, {Genus::kCumulus}, 1.0);
+  s.layers[0].technique = scene::Technique::kMetaballs;
+  EXPECT_THROW(sky.update(s, 0.0), ParameterError);
+  EXPECT_EQ(drawn(sky).data, before.data);
 }
 
 TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAfterAMarch) {

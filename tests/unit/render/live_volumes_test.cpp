@@ -22,17 +22,6 @@ using weather::Genus;
 
 constexpr int kWidth = 96, kHeight = 54, kRound = LiveVolumes::kFramesInRound;
 
-// Mean of the differences of luminance, relative to both.
-double apart(const Image<float>& a, const Image<float>& b) {
-  double sum = 0.0;
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) {
-      const double p = luminanceOf(pixel(a, x, y)), q = luminanceOf(pixel(b, x, y));
-      sum += 2.0 * std::abs(p - q) / (p + q);
-    }
-  return sum / (a.width * a.height);
-}
-
 class LiveVolumesTest : public ::testing::Test {
  protected:
   void TearDown() override {
@@ -76,9 +65,9 @@ TEST_F(LiveVolumesTest, AViewThatStaysConvergesToTheStill) {
     LiveSky sky;
     sky.update(scenes[i], 0.0);
     const shading::View view = viewOf(scenes[i]);
-    const double first = apart(after(sky, view, 1), expected);
-    const double round = apart(after(sky, view, kRound - 1), expected);
-    const double last = apart(after(sky, view, 15 * kRound), expected);
+    const double first = relativeDifference(after(sky, view, 1), expected);
+    const double round = relativeDifference(after(sky, view, kRound - 1), expected);
+    const double last = relativeDifference(after(sky, view, 15 * kRound), expected);
     EXPECT_LT(first, 0.12);
     EXPECT_LT(round, first);
     EXPECT_LT(last, round);
@@ -104,7 +93,7 @@ TEST_F(LiveVolumesTest, WhatItConvergesToKnowsNoPast) {
     walking.update(s, second);
     after(walking, view, 1);
   }
-  EXPECT_LT(apart(after(walking, view, kAll), expected), 0.0005);
+  EXPECT_LT(relativeDifference(after(walking, view, kAll), expected), 0.0005);
 }
 
 // After a turn nothing of the other side is left: the picture is about as good as one that began there, from
@@ -118,13 +107,13 @@ TEST_F(LiveVolumesTest, ASuddenTurnLeavesNoGhosts) {
     LiveSky beginning, turning;
     beginning.update(s, 0.0);
     turning.update(s, 0.0);
-    const double before = apart(after(turning, viewOf(s), 4 * kRound), expected);
+    const double before = relativeDifference(after(turning, viewOf(s), 4 * kRound), expected);
     double all = 0.0, allFresh = 0.0;  // single frames differ, as they march other pixels first
     for (const int frames : {1, 7, 8, 16}) {
-      const double turned = apart(after(turning, viewOf(other), frames), expected);
+      const double turned = relativeDifference(after(turning, viewOf(other), frames), expected);
       EXPECT_LT(turned, 0.4 * before) << frames;
       all += turned;
-      allFresh += apart(after(beginning, viewOf(other), frames), expected);
+      allFresh += relativeDifference(after(beginning, viewOf(other), frames), expected);
     }
     EXPECT_LT(all, 1.2 * allFresh);
   }
@@ -146,8 +135,8 @@ TEST_F(LiveVolumesTest, ASlowTurnKeepsWhatItSaw) {
     const auto number = static_cast<unsigned>(i);
     const Image<float> first = after(fresh, viewOf(now), 1, number);
     const Image<float> expected = after(fresh, viewOf(now), 8 * kRound, number);
-    kept += apart(frame, expected);
-    alone += apart(first, expected);
+    kept += relativeDifference(frame, expected);
+    alone += relativeDifference(first, expected);
   }
   EXPECT_LT(kept, 0.75 * alone);
 }
@@ -163,7 +152,8 @@ TEST_F(LiveVolumesTest, RunningTimeIsFollowed) {
     after(sky, view, 1);
   }
   const Image<float> frame = target.readPicture(0, 3);
-  const double now = apart(frame, still(s, 50.0)), past = apart(frame, still(s, 30.0));
+  const double now = relativeDifference(frame, still(s, 50.0)),
+               past = relativeDifference(frame, still(s, 30.0));
   EXPECT_LT(now, 0.08);
   EXPECT_LT(now, 0.7 * past);
 }
@@ -191,8 +181,8 @@ TEST_F(LiveVolumesTest, TheGroundIsShaded) {
   LiveSky sky;
   sky.update(s, 0.0);
   const Image<float> live = after(sky, viewOf(s), 2 * kRound);
-  EXPECT_LT(apart(live, still(s)), 0.02);
-  EXPECT_GT(apart(live, still(clear)), 0.1);
+  EXPECT_LT(relativeDifference(live, still(s)), 0.02);
+  EXPECT_GT(relativeDifference(live, still(clear)), 0.1);
 }
 
 }  // namespace

@@ -54,17 +54,6 @@ class MixedSkyTest : public ::testing::Test {
   }
   Image<float> drawn(const scene::Scene& s) { return renderer.draw(scene::buildSky(s, 0.0)).luminance; }
 
-  // Mean relative difference of two pictures.
-  static double apart(const Image<float>& a, const Image<float>& b) {
-    double sum = 0.0;
-    for (int y = 0; y < a.height; ++y)
-      for (int x = 0; x < a.width; ++x) {
-        const double l = luminanceOf(pixel(a, x, y)), m = luminanceOf(pixel(b, x, y));
-        sum += std::abs(l - m) / (0.5 * (l + m));
-      }
-    return sum / (a.width * a.height);
-  }
-
   // Of the sun's disc, which outshines all cloud before it: what arrives of it from an eye.
   double sunAt(scene::Scene s, double eyeM) {
     s = sized(fromHeight(std::move(s), eyeM), 8, 8);
@@ -84,8 +73,8 @@ TEST_F(MixedSkyTest, WhatIsNearerHidesWhatIsFarther) {
   scene::Scene other = s;
   other.sheets[0].tileM = 10500.0;  // the same matter, elsewhere
   const auto changes = [&](double eyeM, double pitchDeg) {
-    return apart(drawn(fromHeight(looking(s, 0.0, pitchDeg), eyeM)),
-                 drawn(fromHeight(looking(other, 0.0, pitchDeg), eyeM)));
+    return relativeDifference(drawn(fromHeight(looking(s, 0.0, pitchDeg), eyeM)),
+                              drawn(fromHeight(looking(other, 0.0, pitchDeg), eyeM)));
   };
   const double hidden = changes(2.0, 40.0);  // beneath the deck
   EXPECT_LT(hidden, 0.005);
@@ -135,7 +124,7 @@ TEST_F(MixedSkyTest, ASheetOfNothingChangesNothing) {
   scene::Scene s = cloudyScene(30.0, {Genus::kCumulus, Genus::kAltostratus});
   const Image<float> without = drawn(s);
   s.sheets = {evenSheet(3000.0, 0.0)};
-  EXPECT_LT(apart(without, drawn(s)), 2e-3);
+  EXPECT_LT(relativeDifference(without, drawn(s)), 2e-3);
 }
 
 // What was drawn before leaves no trace, to the last bit.
@@ -176,11 +165,11 @@ TEST_F(MixedSkyTest, ASheetAloneIsThatOfTheFrameLoop) {
         SCOPED_TRACE("sun at " + std::to_string(sunElevationDeg) + ", surface " +
                      std::to_string(static_cast<int>(surface)) + ", tier " +
                      std::to_string(static_cast<int>(tier)));
-        EXPECT_LT(apart(still, live), 0.03);
+        EXPECT_LT(relativeDifference(still, live), 0.03);
         // The plane's mesh has few vertices, where the peak of forward scattering is taken.
         EXPECT_NEAR(luminanceOf(meanOf(still)) / luminanceOf(meanOf(live)), 1.0,
                     surface == SheetSurface::kPlane ? 0.04 : 0.01);
-        const double contrast = apart(still, [&] {
+        const double contrast = relativeDifference(still, [&] {
           Image<float> mean(96, 54, 3);
           const glm::vec3 m = meanOf(still);
           for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = m[static_cast<int>(i % 3)];

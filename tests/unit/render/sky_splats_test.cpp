@@ -45,16 +45,6 @@ class SkySplatsTest : public ::testing::Test {
   }
   Image<float> drawn(const scene::Scene& s) { return renderer.draw(scene::buildSky(s, 0.0)).luminance; }
 
-  // Mean relative difference of two pictures.
-  static double apart(const Image<float>& a, const Image<float>& b) {
-    double sum = 0.0;
-    for (int y = 0; y < a.height; ++y)
-      for (int x = 0; x < a.width; ++x) {
-        const double l = luminanceOf(pixel(a, x, y)), m = luminanceOf(pixel(b, x, y));
-        sum += std::abs(l - m) / (0.5 * (l + m));
-      }
-    return sum / (a.width * a.height);
-  }
   // What a cloud changes in a picture, if it is black.
   double seen(scene::Scene s, scene::MetaballCloud cloud) {
     cloud.albedo = 0.0;
@@ -62,7 +52,7 @@ class SkySplatsTest : public ::testing::Test {
     s.metaballs[0].positionM = {0.0, -190000.0, 0.0};  // behind the eye and the horizon
     const Image<float> without = drawn(s);
     s.metaballs = {cloud};
-    return apart(drawn(s), without);
+    return relativeDifference(drawn(s), without);
   }
 
   std::filesystem::path folder;
@@ -123,7 +113,7 @@ TEST_F(SkySplatsTest, TheOrderOfCloudsDoesNotMatter) {
   s.metaballs[1].positionM.x = 500.0;
   scene::Scene turned = s;
   std::swap(turned.metaballs[0], turned.metaballs[1]);
-  EXPECT_LT(apart(drawn(s), drawn(turned)), 1e-4);
+  EXPECT_LT(relativeDifference(drawn(s), drawn(turned)), 1e-4);
 }
 
 // The faces of a cube show what the picture's own plane does.
