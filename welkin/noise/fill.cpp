@@ -44,8 +44,8 @@ void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint3
 #else
 
 // Room for a chunk of rows.
-inline float* takeChunk(Scratch& scratch) {
-  return scratch.take<float>(std::size_t{kChunk} * kStrip);
+inline float* takeChunk(const FillJob& job, Scratch& scratch) {
+  return scratch.take<float>(static_cast<std::size_t>(job.gradients.chunk) * job.gradients.strip);
 }
 
 // Calls each(z, y, rows) for the chunks of a block, which begins with one, after `sums` have been filled.
@@ -63,24 +63,27 @@ HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, 
   }
 }
 
-// One sum of gradient noise as floats.
-void fillFloats(const FillJob& job, const Block& b, Scratch& scratch) {
+// One sum of gradient noise, stored as it is made.
+template <class Sink>
+void fillSink(const FillJob& job, const Block& b, Scratch& scratch) {
   GradientRows rows(job.gradients, scratch, b.x, b.width);
   for (int z = b.z; z < b.z + b.slices; ++z) {
     rows.beginSlice(z);
     for (int y = b.y; y < b.y + b.rows;)
       y += rows.fillChunkInto(y, b.y + b.rows - y,
-                              [&](int) HWY_ATTR { return FloatSink(job, b.x, y, z, b.width); });
+                              [&](int) HWY_ATTR { return Sink(job, b.x, y, z, b.width); });
   }
 }
 
 // Sums of gradient noise, each a channel.
 void fillSums(const FillJob& job, const Block& b, Scratch& scratch) {
-  if (job.format == Format::kFloat && job.channels == 1) return fillFloats(job, b, scratch);
+  if (job.direct())
+    return job.format == Format::kFloat ? fillSink<FloatSink>(job, b, scratch)
+                                        : fillSink<ByteSink>(job, b, scratch);
   float* channel[4];
-  for (int c = 0; c < job.channels; ++c) channel[c] = takeChunk(scratch);
+  for (int c = 0; c < job.channels; ++c) channel[c] = takeChunk(job, scratch);
   forChunks(job, b, scratch, channel, [&](int z, int y, int rows) HWY_ATTR {
-    storeRows(job, channel, kStrip, b.x, y, z, b.width, rows);
+    storeRows(job, channel, job.gradients.strip, b.x, y, z, b.width, rows);
   });
 }
 
@@ -88,14 +91,14 @@ void fillDistorted(const FillJob& job, const Block& b, Scratch& scratch) {
   const int sums = job.gradients.sums;
   float** shifts = scratch.take<float*>(static_cast<std::size_t>(sums));
   const float** shift = scratch.take<const float*>(static_cast<std::size_t>(sums));
-  for (int s = 0; s < sums; ++s) shifts[s] = takeChunk(scratch);
-  float* out = takeChunk(scratch);
+  for (int s = 0; s < sums; ++s) shifts[s] = takeChunk(job, scratch);
+  float* out = takeChunk(job, scratch);
   forChunks(job, b, scratch, shifts, [&](int z, int y, int rows) HWY_ATTR {
     for (int r = 0; r < rows; ++r) {
-      for (int s = 0; s < sums; ++s) shift[s] = shifts[s] + std::ptrdiff_t{r} * kStrip;
-      distortRow(job, shift, b.x, y + r, z, b.width, out + std::ptrdiff_t{r} * kStrip);
+      for (int s = 0; s < sums; ++s) shift[s] = shifts[s] + std::ptrdiff_t{r} * job.gradients.strip;
+      distortRow(job, shift, b.x, y + r, z, b.width, out + std::ptrdiff_t{r} * job.gradients.strip);
     }
-    storeRows(job, &out, kStrip, b.x, y, z, b.width, rows);
+    storeRows(job, &out, job.gradients.strip, b.x, y, z, b.width, rows);
   });
 }
 
@@ -160,18 +163,18 @@ void fillCells(const FillJob& job, const Block& b, Scratch& scratch) {
     return;
   }
   float* channel[4];
-  for (float*& c : channel) c = takeChunk(scratch);
+  for (float*& c : channel) c = takeChunk(job, scratch);
   forChunks(job, b, scratch, channel, [&](int z, int y, int rows) HWY_ATTR {
     for (int r = 0; r < rows; ++r) {
       const float* cells[4];
       float* to[4];
       for (int c = 0; c < 4; ++c) {
         cells[c] = rowOf(values[c], y + r, z);
-        to[c] = channel[c] + std::ptrdiff_t{r} * kStrip;
+        to[c] = channel[c] + std::ptrdiff_t{r} * job.gradients.strip;
       }
       mixRow(b.width, cells, to);
     }
-    storeRows(job, channel, kStrip, b.x, y, z, b.width, rows);
+    storeRows(job, channel, job.gradients.strip, b.x, y, z, b.width, rows);
   });
 }
 

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -80,17 +81,27 @@ struct RowPlaces {
   const float *lowWeight, *lowReach, *highWeight, *highReach;
 };
 
-// A strip of kStrip samples of kChunk rows is worked on at a time, so that all octaves' lines of lattice
-// points stay in the first-level cache. Arrays over x are padded to a multiple of kPad.
-inline constexpr int kStrip = 128, kChunk = 4, kPad = 64;
+// A strip of samples of a chunk of rows is worked on at a time: octave by octave all lines of lattice points
+// that it lies between, then its sums. Long strips and chunks share what each octave costs beside its lines,
+// and write memory in its own order; the lines stay in a core's own cache. With many octaves strips are half
+// as long, and sums that wait to be put together come in smaller chunks. Arrays over x are padded to a
+// multiple of kPad.
+inline constexpr int kStrip = 256, kMostChunk = 32, kSmallChunk = 8, kPad = 64;
 constexpr int padded(int n) {
   return (n + kPad - 1) / kPad * kPad;
 }
 
-// A line holds A and B of fill.h's formula for a row of lattice points. The lines of an octave are kept in a
-// ring that has room for those of a chunk and two from the chunk before; the last floats keep lines from
-// beginning in the same sets of the cache.
-inline constexpr int kLines = 2 * kChunk + 2, kLineStride = 2 * kStrip + 16;
+// A line holds A and B of fill.h's formula for a row of lattice points: kPad of A, the same of B, and so on.
+// The lines of an octave are kept in a ring that has room for those of a chunk and two from the chunk before;
+// the last floats keep lines from beginning in the same sets of the cache.
+inline constexpr int kMostLines = 2 * kMostChunk + 2;
+constexpr int lineStride(int strip) {
+  return 2 * strip + 16;
+}
+// Where A of sample i is; i and what is used from there on in the same kPad.
+constexpr int inLine(int i) {
+  return i + (i & -kPad);
+}
 struct LineRef {
   std::uint32_t index;   // of the row of lattice points
   std::uint32_t offset;  // of the line, in floats
@@ -125,7 +136,10 @@ struct GradientTables {
   int* first = nullptr;          // sums + 1
   RowPlace* rows = nullptr;      // [row * terms + term]
   ChunkLines* chunks = nullptr;  // [chunk * terms + term]
-  int lead = 0;                  // rows of the first chunk before the box's first
+  int strip = kStrip;            // samples across
+  int chunk = kSmallChunk;       // rows of a chunk
+  int lead = 0;                  // of the first chunk before the box's first
+  int lines = 0;                 // in all octaves' rings
   bool published = false;        // some lattice is
   float bias = 0.0f;             // added to every sum
   Fractal fractal = Fractal::kFbm;
@@ -205,6 +219,13 @@ struct FillJob {
   float low, high;        // clamp of normalised values
   float quantiseScale, quantiseBias;  // for integer formats, to [0, greatest]
   bool stream;                        // `out` is larger than caches: write past them
+
+  // Whether the sums of gradients are stored as they are made.
+  bool direct() const {
+    const bool sums = params->kind == Kind::kPerlin || params->kind == Kind::kCurl;
+    const bool bytes = format == Format::kUint8 && std::endian::native == std::endian::little;
+    return sums && channels == 1 && (format == Format::kFloat || bytes);
+  }
 
   // The whole tiles of a block, from the first tile's first sample.
   Block tilesOf(const Block& b) const;

@@ -96,11 +96,14 @@ class Tables {
     g.sums = sums;
     g.bias = static_cast<float>(bias);
     g.fractal = fractal;
-    g.lead = job_.cellTerms > 0 ? job_.lead[1] % kChunk : 0;  // blocks of cells begin at tiles
     g.first = memory_.take<int>(static_cast<std::size_t>(sums) + 1);
     g.first[0] = 0;
     for (int s = 0; s < sums; ++s) g.first[s + 1] = g.first[s] + counts[s];
     g.terms = g.first[sums];
+    g.strip = job_.cellTerms > 0 || g.terms > kManyTerms ? kStrip / 2 : kStrip;
+    g.chunk = job_.direct() ? kMostChunk : kSmallChunk;
+    g.lead = job_.cellTerms > 0 ? job_.lead[1] % g.chunk : 0;  // blocks of cells begin at tiles
+    g.lines = 0;
     g.term = memory_.take<TermTables>(static_cast<std::size_t>(g.terms));
     const int rows = job_.box.size.y, chunks = chunkCount(g);
     g.rows = memory_.take<RowPlace>(static_cast<std::size_t>(g.terms) * rows);
@@ -166,11 +169,12 @@ class Tables {
  private:
   // Cells between samples, from which and up to which tiles are cut into cubes: measured.
   static constexpr double kTileStep = 0.1, kCubeStep = 0.3;
+  static constexpr int kManyTerms = 8;       // octaves from which on strips are half as long: measured
   static constexpr double kTileCells = 0.5;  // of a cell's edge that a tile spans in y and z
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
 
-  int chunkCount(const GradientTables& g) const { return (g.lead + job_.box.size.y + kChunk - 1) / kChunk; }
+  int chunkCount(const GradientTables& g) const { return (g.lead + job_.box.size.y + g.chunk - 1) / g.chunk; }
 
   static Spot spotOf(const Axis& axis, double p) {
     const Span span = axis.at(p);
@@ -319,10 +323,19 @@ class Tables {
   // Which lines of lattice points the rows lie between, chunk by chunk.
   void addRows(GradientTables& g, int t, const Line& y, float scale) {
     const int rows = job_.box.size.y, chunks = chunkCount(g);
-    LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * kLines);
-    auto* hash = memory_.take<std::uint32_t>(static_cast<std::size_t>(chunks) * kLines + kPad);
-    std::uint32_t slot = 0;
     const Axis& axis = g.term[t].lattice->axis(1);
+    // Rows less than a cell apart share lines: those over so many cells lie between three more, two are from
+    // the chunk before, and roundings may make some twice.
+    const int most = 2 * g.chunk + 2;
+    const double cells = axis.frequency() * job_.grid.spacing.y * g.chunk;
+    const auto ring =
+        static_cast<std::uint32_t>(cells < g.chunk ? std::min(static_cast<int>(cells) + 7, most) : most);
+    const auto first = static_cast<std::uint32_t>(g.lines),
+               stride = static_cast<std::uint32_t>(lineStride(g.strip));
+    g.lines += static_cast<int>(ring);
+    LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * most);
+    auto* hash = memory_.take<std::uint32_t>(static_cast<std::size_t>(chunks) * most + kPad);
+    std::uint32_t slot = 0;
     const LineRef* last[2] = {};  // of the row before
     for (int c = 0; c < chunks; ++c) {
       ChunkLines& chunk = g.chunks[static_cast<std::size_t>(c) * g.terms + t];
@@ -333,13 +346,13 @@ class Tables {
           l = next + chunk.count++;
         }
       chunk.left = chunk.count;
-      for (int row = std::max(c * kChunk - g.lead, 0); row < std::min((c + 1) * kChunk - g.lead, rows);
+      for (int row = std::max(c * g.chunk - g.lead, 0); row < std::min((c + 1) * g.chunk - g.lead, rows);
            ++row) {
         const auto find = [&](std::uint32_t index) {
           for (const LineRef* l : {last[1], last[0]})
             if (l != nullptr && l->index == index) return l;
           LineRef& made = next[chunk.count++];
-          made = {index, (static_cast<std::uint32_t>(t) * kLines + slot++ % kLines) * kLineStride};
+          made = {index, (first + slot++ % ring) * stride};
           return static_cast<const LineRef*>(&made);
         };
         const LineRef* low = find(y.low[row]);
@@ -441,13 +454,13 @@ void fillGrid(FillJob& job) {
 
   // Blocks: of gradients as tall as leaves every thread several, so that rows share what lies between rows of
   // lattice points; of cells small enough for a core's own cache.
-  const int strip = cells ? 128 : kStrip;
+  const int strip = cells ? 128 : job.gradients.strip;
   int rows = size.y, slices = 1;
   if (cells) {
     rows = p.dimensions == 3 ? 16 : 64;
     slices = p.kind == Kind::kCellular ? 16 : 8;
   } else if (size.z < 4 * threadCount()) {
-    rows = std::max(64, size.y / (4 * threadCount()) / kChunk * kChunk);
+    rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
   }
   const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
   const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0, leadZ = cells ? job.lead[2] : 0;

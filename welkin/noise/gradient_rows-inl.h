@@ -16,172 +16,11 @@
 #include <utility>
 
 #include "welkin/noise/fill.h"
+#include "welkin/noise/gradient_points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace welkin::noise::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-using Words = hn::ScalableTag<std::uint32_t>;
-using Bytes = hn::Repartition<std::uint8_t, Words>;
-using VF = hn::Vec<Floats>;
-using VU = hn::Vec<Words>;
-
-// mix32() of each lane.
-HWY_INLINE VU mixedWords(VU h) {
-  const Words du;
-  h = hn::Xor(h, hn::ShiftRight<16>(h));
-  h = hn::Mul(h, hn::Set(du, 0x85ebca6bu));
-  h = hn::Xor(h, hn::ShiftRight<13>(h));
-  h = hn::Mul(h, hn::Set(du, 0xc2b2ae35u));
-  return hn::Xor(h, hn::ShiftRight<16>(h));
-}
-
-// One corner of the axes beside x and y.
-struct Plane {
-  std::uint32_t hash;   // of those axes
-  std::uint32_t index;  // on the third
-  float weight;         // product of the axes' weights
-  float reach[2];       // the same with an axis' reach in its weight's place, third and fourth
-};
-
-// Vectors of 64 bytes come with 32 registers.
-inline constexpr bool kManyRegisters = hn::MaxLanes(Floats()) >= 16;
-
-// In a register from here on: GCC would rather load what is used twice twice.
-HWY_INLINE void keep(VF& v) {
-#if HWY_ARCH_X86 && defined(__GNUC__) && !defined(__clang__)
-  asm("" : "+v"(v.raw));
-#else
-  (void)v;
-#endif
-}
-
-// Components of gradients by look-up of bytes. With three and four axes the upper byte of +-2 or 0
-// (gradientBytesScale() undoes the 2), with two axes the upper two bytes.
-template <int kAxes>
-struct Gradients {
-  HWY_INLINE Gradients() {
-    for (int a = 0; a < kAxes; ++a) table[a] = hn::LoadDup128(Bytes(), kGradientBytes<kAxes>.component[a]);
-  }
-
-  // Where in the tables the gradient of a point hash is: the indices of the bytes of each component, 0x80 and
-  // up for those that are zero.
-  static HWY_INLINE VU where(VU hash) {
-    const Words d;
-    if constexpr (kAxes == 2) {
-      const VU upper = hn::And(hash, hn::Set(d, 7u << kGradientShift));
-      return hn::Or(hn::Or(upper, hn::ShiftRight<8>(upper)), hn::Set(d, 0x00088080u));
-    } else {
-      return hn::OrAnd(hn::Set(d, 0x00808080u), hash, hn::Set(d, 15u << kGradientShift));
-    }
-  }
-
-  HWY_INLINE VF component(int axis, VU at) const {
-    return hn::BitCast(Floats(), hn::TableLookupBytesOr0(table[axis], at));
-  }
-
-  hn::Vec<Bytes> table[kAxes];
-};
-
-// What a lattice point gives to its line: the parts of A that do not and that do grow with the distance in x,
-// and B. Sums over the planes.
-struct PointValue {
-  VF level, slope, b;
-};
-
-// These of a line's points. Components of gradients of three and four axes are 0 or +-2, so that their
-// products with weights are exact, and it makes no difference whether these are looked up or multiplied.
-template <int kAxes>
-class Points {
- public:
-  static constexpr int kPlanes = 1 << (kAxes - 2);
-
-  explicit HWY_INLINE Points(const Plane* planes) {
-    const Floats d;
-    for (int p = 0; p < kPlanes; ++p)
-      if constexpr (kTables)
-        table_[p] =
-            weighted(planes[p], gradients_.where(hn::ShiftLeft<kGradientShift>(hn::Iota(Words(), 0))));
-      else if constexpr (kAxes > 2) {
-        weight_[p] = hn::Set(d, planes[p].weight);
-        for (int i = 0; i < kAxes - 2; ++i) reach_[p][i] = hn::Set(d, planes[p].reach[i]);
-      }
-  }
-
-  // Of the points with these hashes in each plane.
-  template <class HashOf>
-  HWY_INLINE PointValue operator()(const HashOf& hashOf) const {
-    PointValue sum = one(0, hashOf(0));
-    for (int p = 1; p < kPlanes; ++p) {
-      const VU hash = hashOf(p);
-      if constexpr (kTables || kAxes == 4) {
-        const PointValue v = one(p, hash);
-        sum = {hn::Add(sum.level, v.level), hn::Add(sum.slope, v.slope), hn::Add(sum.b, v.b)};
-      } else {
-        const VU at = gradients_.where(hash);
-        sum.level = hn::MulAdd(gradients_.component(2, at), reach_[p][0], sum.level);
-        sum.slope = hn::MulAdd(gradients_.component(0, at), weight_[p], sum.slope);
-        sum.b = hn::MulAdd(gradients_.component(1, at), weight_[p], sum.b);
-      }
-    }
-    return sum;
-  }
-
- private:
-  // Vectors that hold a value for every gradient, looked up by a permutation of lanes.
-#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
-  static constexpr bool kTables = hn::MaxLanes(Floats()) >= (kAxes == 2 ? 8 : 16);
-#else
-  static constexpr bool kTables = false;
-#endif
-
-  HWY_INLINE PointValue one(int p, VU hash) const {
-    if constexpr (kTables) {
-      const PointValue& table = table_[p];
-      // The processor looks at the lowest bits of an index alone.
-      const VU index = hn::ShiftRight<kGradientShift>(hash);
-      const auto look = [&](VF from) HWY_ATTR { return lookedUp(from, index); };
-      return {kAxes == 2 ? hn::Zero(Floats()) : look(table.level), look(table.slope), look(table.b)};
-    } else if constexpr (kAxes == 2) {
-      const VU at = gradients_.where(hash);
-      return {hn::Zero(Floats()), gradients_.component(0, at), gradients_.component(1, at)};
-    } else {
-      const VU at = gradients_.where(hash);
-      return byWeights(at, weight_[p], reach_[p]);
-    }
-  }
-
-  static HWY_INLINE VF lookedUp(VF from, VU index) {
-#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
-    using Indices = decltype(hn::IndicesFromVec(Floats(), index));
-    return hn::TableLookupLanes(from, Indices{index.raw});
-#else
-    return hn::TableLookupLanes(from, hn::IndicesFromVec(Floats(), index));
-#endif
-  }
-
-  HWY_INLINE PointValue weighted(const Plane& plane, VU at) const {
-    const Floats d;
-    if constexpr (kAxes == 2) {
-      return {hn::Zero(d), gradients_.component(0, at), gradients_.component(1, at)};
-    } else {
-      const VF reach[2] = {hn::Set(d, plane.reach[0]), hn::Set(d, plane.reach[1])};
-      return byWeights(at, hn::Set(d, plane.weight), reach);
-    }
-  }
-
-  HWY_INLINE PointValue byWeights(VU at, VF weight, const VF* reach) const {
-    VF level = hn::Mul(gradients_.component(2, at), reach[0]);
-    if constexpr (kAxes == 4) level = hn::MulAdd(gradients_.component(3, at), reach[1], level);
-    return {level, hn::Mul(gradients_.component(0, at), weight),
-            hn::Mul(gradients_.component(1, at), weight)};
-  }
-
-  const Gradients<kAxes> gradients_;
-  PointValue table_[kPlanes];
-  VF weight_[kPlanes], reach_[kPlanes][2];
-};
 
 // A strip of the box, chunk after chunk of rows.
 class GradientRows {
@@ -189,11 +28,14 @@ class GradientRows {
   GradientRows(const GradientTables& tables, Scratch& scratch, int x, int width)
       : tables_(tables), x_(x), width_(padded(width)) {
     const auto terms = static_cast<std::size_t>(tables.terms);
-    lines_ = scratch.take<float>(terms * kLines * kLineStride);
+    lines_ = scratch.take<float>(static_cast<std::size_t>(tables.lines) * lineStride(tables.strip));
     planes_ = scratch.take<Plane>(kMaxPlanes * terms);
-    points_ = scratch.take<float>(std::size_t{2} * kPointValues * kPointStride);
-    if (tables.published)
-      published_ = scratch.take<std::uint32_t>(std::size_t{2} * kLines * kMaxPlanes * kStrip);
+    points_ = scratch.take<float>(std::size_t{kSideBySide} * kPointValues * kPointStride);
+    below_ = scratch.take<std::int32_t>(terms * kStrip);
+    for (int t = 0; t < tables.terms; ++t)
+      if (tables.term[t].x.pointHash != nullptr)
+        makeBelow(tables.term[t].x.cell + x, below_ + std::ptrdiff_t{kStrip} * t);
+    if (tables.published) published_ = scratch.take<std::uint32_t>(std::size_t{4} * kMostLines * kStrip);
   }
 
   void beginSlice(int z) {
@@ -202,8 +44,8 @@ class GradientRows {
   }
 
   // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. The
-  // samples from i on of row r of sum s go to sinkOf(s)(r, i, vector); the last ones may be past the width.
-  // Chunks of a slice must follow one another.
+  // samples from i on of row r of sum s go to sinkOf(s)(r, i, vectors), kVectors at a time; the last ones may
+  // be past the width. Chunks of a slice must follow one another.
   template <class SinkOf>
   HWY_INLINE int fillChunkInto(int y, int rows, const SinkOf& sinkOf) {
     rows = expandChunk(y, rows);
@@ -213,7 +55,10 @@ class GradientRows {
       const auto sink = sinkOf(s);
       switch (tables_.fractal) {
         case Fractal::kFbm:
-          sum<Fractal::kFbm>(first, terms, places, rows, sink);
+          if (terms == 1)
+            sumOne(places, rows, sink);
+          else
+            sum<Fractal::kFbm>(first, terms, places, rows, sink);
           break;
         case Fractal::kBillow:
           sum<Fractal::kBillow>(first, terms, places, rows, sink);
@@ -226,23 +71,33 @@ class GradientRows {
     return rows;
   }
 
-  // Row r of sum s goes to out[s] + r * kStrip.
+  // Row r of sum s goes to out[s] + r * strip.
   HWY_NOINLINE int fillChunk(int y, int rows, float* const* out) {
-    return fillChunkInto(y, rows, [out](int s) HWY_ATTR {
+    return fillChunkInto(y, rows, [out, strip = tables_.strip](int s) HWY_ATTR {
       float* HWY_RESTRICT to = out[s];
-      return [to](int row, int i, VF v)
-                 HWY_ATTR { hn::Store(v, Floats(), to + static_cast<std::ptrdiff_t>(row) * kStrip + i); };
+      return [to, strip](int row, int i, const VF* v) HWY_ATTR {
+        const Floats d;
+        float* HWY_RESTRICT out = to + static_cast<std::ptrdiff_t>(row) * strip + i;
+        for (int k = 0; k < kVectors; ++k) hn::Store(v[k], d, out + k * static_cast<int>(hn::Lanes(d)));
+      };
     });
   }
 
  private:
   static constexpr std::size_t kMaxPlanes = 4;
   // A strip has as many points as samples and two, and vectors may reach over the last.
-  static constexpr int kPointValues = 3, kPointStride = kStrip + kPad;
+  static constexpr int kSideBySide = 3, kPointValues = 3, kPointStride = kStrip + kPad;
+
+  // From the point below each vector's first sample to those below all of its samples.
+  void makeBelow(const std::int32_t* HWY_RESTRICT cell, std::int32_t* HWY_RESTRICT below) const {
+    const hn::RebindToSigned<Floats> di;
+    for (int i = 0; i < width_; i += static_cast<int>(hn::Lanes(di)))
+      hn::Store(hn::Sub(hn::LoadU(di, cell + i), hn::Set(di, cell[i])), di, below + i);
+  }
 
   // Makes the lines of the chunk that row y is in; returns how many rows, at most `rows`, follow in it.
   int expandChunk(int y, int rows) {
-    const int chunk = (y + tables_.lead) / kChunk;
+    const int chunk = (y + tables_.lead) / tables_.chunk;
     const ChunkLines* lines = tables_.chunks + static_cast<std::ptrdiff_t>(chunk) * tables_.terms;
     for (int t = 0; t < tables_.terms; ++t) {
       const std::uint32_t left = fresh_ ? 0 : lines[t].left;
@@ -250,7 +105,7 @@ class GradientRows {
         expand(t, lines[t].line + left, lines[t].hash + left, static_cast<int>(lines[t].count - left));
     }
     fresh_ = false;
-    return HWY_MIN(rows, (chunk + 1) * kChunk - tables_.lead - y);
+    return HWY_MIN(rows, (chunk + 1) * tables_.chunk - tables_.lead - y);
   }
 
   void makePlanes(int t, int z) {
@@ -288,7 +143,7 @@ class GradientRows {
     const Words du;
     const TermTables& term = tables_.term[t];
     constexpr int kPlanes = 1 << (kAxes - 2);
-    HWY_ALIGN std::uint32_t rows[kPlanes][padded(kLines)];
+    HWY_ALIGN std::uint32_t rows[kPlanes][padded(kMostLines)];
     for (int p = 0; p < kPlanes; ++p)
       for (int n = 0; n < count; n += static_cast<int>(hn::Lanes(du))) {
         const auto sum = hn::Add(hn::LoadU(du, hashes + n), hn::Set(du, planes_[kMaxPlanes * t + p].hash));
@@ -310,16 +165,17 @@ class GradientRows {
     // With two axes an evaluation costs no more than what gathering adds.
     const bool gathered = kAxes > 2 && term.x.pointHash != nullptr && gathers(term.x.step);
     // Lines side by side share the loads of factors.
-    constexpr int kMost = kManyRegisters || kAxes == 2 ? 2 : 1;
     for (int n = 0; n < count;) {
       const std::uint32_t* row = &rows[0][n];
-      const int side = gathered ? HWY_MIN(2, count - n) : HWY_MIN(kMost, count - n);
-      if (gathered && side == 2)
-        gather<kAxes, 2>(points, term.x, lines, row);
+      const int side = HWY_MIN(gathered ? kSideBySide : 2, count - n);
+      if (gathered && side == 3)
+        gather<kAxes, 3>(points, t, lines, row);
+      else if (gathered && side == 2)
+        gather<kAxes, 2>(points, t, lines, row);
       else if (gathered)
-        gather<kAxes, 1>(points, term.x, lines, row);
+        gather<kAxes, 1>(points, t, lines, row);
       else if (side == 2)
-        scatter<kAxes, kMost>(points, term.x, hash, lines, row);
+        scatter<kAxes, 2>(points, term.x, hash, lines, row);
       else
         scatter<kAxes, 1>(points, term.x, hash, lines, row);
       n += side;
@@ -350,7 +206,7 @@ class GradientRows {
     constexpr int kPlanes = 1 << (kAxes - 2);
     VU row[kPlanes][kCount];
     for (int n = 0; n < kCount; ++n)
-      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * padded(kLines) + n]);
+      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * padded(kMostLines) + n]);
     const auto nothing = [](int) { return 0; };
     expandSome<kAxes, kCount>(
         x, lines, nothing, [&, hash](int, int n, int i, PointValue& low, PointValue& high) HWY_ATTR {
@@ -366,10 +222,11 @@ class GradientRows {
 
   // Lines whose points are evaluated first, each once.
   template <int kAxes, int kCount>
-  HWY_INLINE void gather(const Points<kAxes>& points, const RowPlaces& x, const LineRef* lines,
+  HWY_INLINE void gather(const Points<kAxes>& points, int t, const LineRef* lines,
                          const std::uint32_t* rows) const {
     const Floats d;
     const Words du;
+    const RowPlaces& x = tables_.term[t].x;
     const std::int32_t* HWY_RESTRICT cell = x.cell + x_;
     const std::uint32_t* HWY_RESTRICT hash = x.pointHash + cell[0];
     const int count = cell[width_ - 1] - cell[0] + 2;
@@ -378,7 +235,7 @@ class GradientRows {
       for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
         const VU h = hn::LoadU(du, hash + i);
         const PointValue v =
-            points([&](int p) HWY_ATTR { return hn::Mul(h, hn::Set(du, rows[p * padded(kLines) + n])); });
+            points([&](int p) HWY_ATTR { return hn::Mul(h, hn::Set(du, rows[p * padded(kMostLines) + n])); });
         if constexpr (kAxes > 2) hn::Store(v.level, d, to + i);
         hn::Store(v.slope, d, to + kPointStride + i);
         hn::Store(v.b, d, to + 2 * kPointStride + i);
@@ -392,8 +249,9 @@ class GradientRows {
     };
     const float* HWY_RESTRICT const from = points_;
     const std::int32_t begin = cell[0];
+    const std::int32_t* HWY_RESTRICT const below = below_ + std::ptrdiff_t{kStrip} * t;
     const auto placesOf = [=](int i) HWY_ATTR {
-      const auto at = hn::Sub(hn::LoadU(di, cell + i), hn::Set(di, cell[i]));
+      const auto at = hn::Load(di, below + i);
       return Places{hn::IndicesFromVec(d, at), hn::IndicesFromVec(d, hn::Add(at, hn::Set(di, 1))),
                     cell[i] - begin};
     };
@@ -435,8 +293,8 @@ class GradientRows {
         if constexpr (kAxes > 2) a = hn::MulAdd(lowWeight, low.level, a);
         a = hn::MulAdd(highReach, high.slope, a);
         if constexpr (kAxes > 2) a = hn::MulAdd(highWeight, high.level, a);
-        hn::Store(a, d, out[n] + i);
-        hn::Store(hn::MulAdd(highWeight, high.b, hn::Mul(lowWeight, low.b)), d, out[n] + kStrip + i);
+        hn::Store(a, d, out[n] + inLine(i));
+        hn::Store(hn::MulAdd(highWeight, high.b, hn::Mul(lowWeight, low.b)), d, out[n] + inLine(i) + kPad);
       }
     }
   }
@@ -462,53 +320,42 @@ class GradientRows {
   }
 
   // Two rows by four vectors of sums, in registers: chains of additions enough to hide their latency.
-  static constexpr int kPair = 2, kVectors = 4;
+  static constexpr int kPair = 2;
   using Sums = VF[kPair][kVectors];
 
   // Which lines a row shares with the row before, and need not be loaded again.
   enum class Shared { kNone, kBoth, kNext };  // kNext: its lower one is the other's upper one
   static Shared sharedBy(const RowPlace& first, const RowPlace& second) {
     if (first.lines[0] == second.lines[0] && first.lines[1] == second.lines[1]) return Shared::kBoth;
-    return kManyRegisters && first.lines[1] == second.lines[0] ? Shared::kNext : Shared::kNone;
+    return first.lines[1] == second.lines[0] ? Shared::kNext : Shared::kNone;
   }
 
-  // Adds one octave.
+  // Adds one octave; `lines` from the samples on.
   template <Shared kShared>
   static HWY_INLINE void addOctave(const float* HWY_RESTRICT lines, const RowPlace& first,
-                                   const RowPlace& second, int i, Sums& n) {
+                                   const RowPlace& second, Sums& n) {
     const Floats d;
     const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-    const float* HWY_RESTRICT line0[2] = {lines + first.lines[0] + i, lines + first.lines[1] + i};
-    const float* HWY_RESTRICT line1[2] = {lines + second.lines[0] + i, lines + second.lines[1] + i};
+    const float* HWY_RESTRICT const line0[2] = {lines + first.lines[0], lines + first.lines[1]};
+    const float* HWY_RESTRICT const line1[2] = {lines + second.lines[0], lines + second.lines[1]};
     for (int part = 0; part < 2; ++part) {  // A, then B
-      if constexpr (kManyRegisters) {
-        const VF low0 = hn::Set(d, first.weights[part]), high0 = hn::Set(d, first.weights[2 + part]);
-        const VF low1 = hn::Set(d, second.weights[part]), high1 = hn::Set(d, second.weights[2 + part]);
-        for (int v = 0; v < kVectors; ++v) {
-          const std::ptrdiff_t at = std::ptrdiff_t{part} * kStrip + v * lanes;
-          VF x0 = hn::Load(d, line0[0] + at), x1 = hn::Load(d, line0[1] + at);
-          if constexpr (kShared == Shared::kBoth) keep(x0);
-          if constexpr (kShared != Shared::kNone) keep(x1);
-          const VF y0 = kShared == Shared::kBoth   ? x0
-                        : kShared == Shared::kNext ? x1
-                                                   : hn::Load(d, line1[0] + at);
-          const VF y1 = kShared == Shared::kBoth ? x1 : hn::Load(d, line1[1] + at);
-          n[0][v] = hn::MulAdd(low0, x0, n[0][v]);
-          n[1][v] = hn::MulAdd(low1, y0, n[1][v]);
-          n[0][v] = hn::MulAdd(high0, x1, n[0][v]);
-          n[1][v] = hn::MulAdd(high1, y1, n[1][v]);
-        }
-      } else {  // one line after the other, for fewer numbers at a time
-        for (int side = 0; side < 2; ++side) {
-          const auto w0 = hn::Set(d, first.weights[2 * side + part]),
-                     w1 = hn::Set(d, second.weights[2 * side + part]);
-          for (int v = 0; v < kVectors; ++v) {
-            const std::ptrdiff_t at = std::ptrdiff_t{part} * kStrip + v * lanes;
-            const auto x = hn::Load(d, line0[side] + at);
-            n[0][v] = hn::MulAdd(w0, x, n[0][v]);
-            n[1][v] = hn::MulAdd(w1, kShared == Shared::kBoth ? x : hn::Load(d, line1[side] + at), n[1][v]);
-          }
-        }
+      const VF low0 = hn::Set(d, first.weights[part]), high0 = hn::Set(d, first.weights[2 + part]);
+      const VF low1 = hn::Set(d, second.weights[part]), high1 = hn::Set(d, second.weights[2 + part]);
+      for (int v = 0; v < kVectors; ++v) {
+        const std::ptrdiff_t at = part * kPad + v * lanes;
+        VF x = hn::Load(d, line0[0] + at);
+        if constexpr (kShared == Shared::kBoth) keep(x);
+        n[0][v] = hn::MulAdd(low0, x, n[0][v]);
+        if constexpr (kShared == Shared::kBoth) n[1][v] = hn::MulAdd(low1, x, n[1][v]);
+        x = hn::Load(d, line0[1] + at);
+        if constexpr (kShared != Shared::kNone) keep(x);
+        n[0][v] = hn::MulAdd(high0, x, n[0][v]);
+        if constexpr (kShared == Shared::kBoth) n[1][v] = hn::MulAdd(high1, x, n[1][v]);
+        if constexpr (kShared == Shared::kNext) n[1][v] = hn::MulAdd(low1, x, n[1][v]);
+        if constexpr (kShared == Shared::kNone)
+          n[1][v] = hn::MulAdd(low1, hn::Load(d, line1[0] + at), n[1][v]);
+        if constexpr (kShared != Shared::kBoth)
+          n[1][v] = hn::MulAdd(high1, hn::Load(d, line1[1] + at), n[1][v]);
       }
     }
   }
@@ -537,27 +384,52 @@ class GradientRows {
           if constexpr (kFractal == Fractal::kFbm) {
             switch (sharedBy(places[t], partner[t])) {
               case Shared::kBoth:
-                addOctave<Shared::kBoth>(lines, places[t], partner[t], i, s);
+                addOctave<Shared::kBoth>(lines + inLine(i), places[t], partner[t], s);
                 break;
               case Shared::kNext:
-                addOctave<Shared::kNext>(lines, places[t], partner[t], i, s);
+                addOctave<Shared::kNext>(lines + inLine(i), places[t], partner[t], s);
                 break;
               case Shared::kNone:
-                addOctave<Shared::kNone>(lines, places[t], partner[t], i, s);
+                addOctave<Shared::kNone>(lines + inLine(i), places[t], partner[t], s);
                 break;
             }
           } else {
             Sums n;
             setAll(n, hn::Zero(d));
-            addOctave<Shared::kNone>(lines, places[t], partner[t], i, n);
+            addOctave<Shared::kNone>(lines + inLine(i), places[t], partner[t], n);
             for (int row = 0; row < kPair; ++row)
               for (int v = 0; v < kVectors; ++v)
                 s[row][v] = shaped<kFractal>(n[row][v], s[row][v], tables_.term[first + t].weight);
           }
         }
-        for (int v = 0; v < kVectors; ++v) sink(r, i + v * lanes, s[0][v]);
-        if (pair)
-          for (int v = 0; v < kVectors; ++v) sink(r + 1, i + v * lanes, s[1][v]);
+        sink(r, i, s[0]);
+        if (pair) sink(r + 1, i, s[1]);
+      }
+    }
+  }
+
+  // The same of a single octave: its weights stay in registers.
+  template <class Sink>
+  HWY_INLINE void sumOne(const RowPlace* places, int rows, const Sink& sink) const {
+    const Floats d;
+    const auto lanes = static_cast<int>(hn::Lanes(d));
+    const int width = width_, stride = tables_.terms;
+    const auto bias = hn::Set(d, tables_.bias);
+    for (int r = 0; r < rows; ++r, places += stride) {
+      const float* HWY_RESTRICT const low = lines_ + places->lines[0];
+      const float* HWY_RESTRICT const high = lines_ + places->lines[1];
+      const auto lowWeight = hn::Set(d, places->weights[0]), lowReach = hn::Set(d, places->weights[1]);
+      const auto highWeight = hn::Set(d, places->weights[2]), highReach = hn::Set(d, places->weights[3]);
+      for (int i = 0; i < width; i += kVectors * lanes) {
+        VF s[kVectors];
+        for (int v = 0; v < kVectors; ++v) {
+          const int at = inLine(i) + v * lanes;
+          s[v] = hn::MulAdd(lowWeight, hn::Load(d, low + at), bias);
+          s[v] = hn::MulAdd(highWeight, hn::Load(d, high + at), s[v]);
+          s[v] = hn::MulAdd(lowReach, hn::Load(d, low + kPad + at), s[v]);
+          s[v] = hn::MulAdd(highReach, hn::Load(d, high + kPad + at), s[v]);
+        }
+        sink(r, i, s);
       }
     }
   }
@@ -565,9 +437,10 @@ class GradientRows {
   const GradientTables& tables_;
   int x_, width_;
   bool fresh_ = true;                   // no lines are left
-  float* lines_;                        // kLines a term
+  float* lines_;                        // the octaves' rings
   Plane* planes_;                       // kMaxPlanes a term
-  float* points_;                       // of two lines, each value of PointValue
+  float* points_;                       // of kSideBySide lines, each value of PointValue
+  std::int32_t* below_;                 // by sample, a term after the other
   std::uint32_t* published_ = nullptr;  // hashes: of a line, a plane, the lower corners, then the upper ones
 };
 

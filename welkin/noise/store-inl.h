@@ -10,6 +10,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -150,34 +151,45 @@ HWY_INLINE void storeRowAs(const FillJob& job, const float* const* rows, int cou
   }
 }
 
-// One channel of floats, vector by vector as it is made: rows of `width` samples. Memory is written while the
-// next samples are worked out.
+// The row of one channel's values in the output, from a sample of the box on.
+template <class T>
+HWY_INLINE T* rowAt(const FillJob& job, int x, int y, int z) {
+  const glm::ivec3& size = job.box.size;
+  return static_cast<T*>(job.out) + (static_cast<std::size_t>(z) * size.y + y) * size.x + x;
+}
+
+// One channel of floats, four vectors at a time as they are made: rows of `width` samples. Memory is written
+// while the next samples are worked out.
 class FloatSink {
  public:
   FloatSink(const FillJob& job, int x, int y, int z, int width)
-      : stride_(job.box.size.x), width_(width), low_(job.low), high_(job.high) {
-    const glm::ivec3& size = job.box.size;
-    out_ = static_cast<float*>(job.out) + (static_cast<std::size_t>(z) * size.y + y) * size.x + x;
+      : out_(rowAt<float>(job, x, y, z)),
+        stride_(job.box.size.x),
+        width_(width),
+        clamps_(job.low > hwy::LowestValue<float>() || job.high < hwy::HighestValue<float>()),
+        low_(job.low),
+        high_(job.high) {
     constexpr std::size_t kBytes = sizeof(float) * hn::MaxLanes(hn::ScalableTag<float>());
     stream_ = job.stream && reinterpret_cast<std::uintptr_t>(out_) % kBytes == 0 &&
               static_cast<std::size_t>(stride_) * sizeof(float) % kBytes == 0;
   }
 
   template <class V>
-  HWY_INLINE void operator()(int row, int i, V v) const {
+  HWY_INLINE void operator()(int row, int i, const V* made) const {
     const hn::ScalableTag<float> d;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    v = hn::Clamp(v, hn::Set(d, low_), hn::Set(d, high_));
+    V v[4] = {made[0], made[1], made[2], made[3]};
+    if (clamps_)
+      for (V& one : v) one = hn::Clamp(one, hn::Set(d, low_), hn::Set(d, high_));
     float* to = out_ + row * stride_ + i;
-    if (i + lanes <= width_) {
-      if (stream_)
-        hn::Stream(v, d, to);
-      else
-        hn::StoreU(v, d, to);
-    } else if (i < width_) {
-      HWY_ALIGN float rest[hn::MaxLanes(hn::ScalableTag<float>())];
-      hn::Store(v, d, rest);
-      std::memcpy(to, rest, sizeof(float) * static_cast<std::size_t>(width_ - i));
+    if (i + 4 * lanes > width_) {
+      HWY_ALIGN float rest[4 * hn::MaxLanes(hn::ScalableTag<float>())];
+      for (int k = 0; k < 4; ++k) hn::Store(v[k], d, rest + k * lanes);
+      if (i < width_) std::memcpy(to, rest, sizeof(float) * static_cast<std::size_t>(width_ - i));
+    } else if (stream_) {
+      for (int k = 0; k < 4; ++k) hn::Stream(v[k], d, to + k * lanes);
+    } else {
+      for (int k = 0; k < 4; ++k) hn::StoreU(v[k], d, to + k * lanes);
     }
   }
 
@@ -185,8 +197,52 @@ class FloatSink {
   float* out_;
   std::ptrdiff_t stride_;
   int width_;
+  bool clamps_;
   float low_, high_;
   bool stream_;  // past the caches, where whole vectors go to their own multiples
+};
+
+// The same of one channel of bytes.
+class ByteSink {
+ public:
+  ByteSink(const FillJob& job, int x, int y, int z, int width)
+      : job_(job), out_(rowAt<std::uint8_t>(job, x, y, z)), stride_(job.box.size.x), width_(width) {}
+
+  template <class V>
+  HWY_INLINE void operator()(int row, int i, const V* v) const {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const hn::Repartition<std::uint8_t, decltype(du)> bytes;
+    constexpr int kLanes = static_cast<int>(hn::MaxLanes(d)), kBlocks = kLanes / 4;
+    // Sample j of each vector in word j; turned round in blocks of 16 bytes; then the blocks' words of each
+    // vector together.
+    HWY_ALIGN static constexpr std::uint8_t kTurned[16] = {0, 4, 8,  12, 1, 5, 9,  13,
+                                                           2, 6, 10, 14, 3, 7, 11, 15};
+    static constexpr std::array<std::uint32_t, kLanes> kTogether = [] {
+      std::array<std::uint32_t, kLanes> from{};
+      for (int to = 0; to < kLanes; ++to) from[to] = 4 * (to % kBlocks) + to / kBlocks;
+      return from;
+    }();
+    const auto turned =
+        hn::BitCast(du, hn::TableLookupBytes(hn::BitCast(bytes, packed(job_, d, v[0], v[1], v[2], v[3])),
+                                             hn::LoadDup128(bytes, kTurned)));
+    const auto together =
+        hn::BitCast(bytes, hn::TableLookupLanes(turned, hn::SetTableIndices(du, kTogether.data())));
+    std::uint8_t* to = out_ + row * stride_ + i;
+    if (i + 4 * kLanes <= width_) {
+      hn::StoreU(together, bytes, to);
+    } else if (i < width_) {
+      HWY_ALIGN std::uint8_t rest[4 * kLanes];
+      hn::Store(together, bytes, rest);
+      std::memcpy(to, rest, static_cast<std::size_t>(width_ - i));
+    }
+  }
+
+ private:
+  const FillJob& job_;
+  std::uint8_t* out_;
+  std::ptrdiff_t stride_;
+  int width_;
 };
 
 // Rows of a block, from sample x of row y and slice z of the box on; each `stride` floats behind the one
