@@ -14,6 +14,7 @@
 #include "bench/frame_bench.h"
 #include "bench/noise_bench.h"
 #include "bench/splat_bench.h"
+#include "bench/tracer_bench.h"
 #include "bench/truth_bench.h"
 #endif
 
@@ -165,15 +166,44 @@ Json truthJson(const BenchArgs& args) {
   return {{"device", table.device}, {"scenes", all}, {"summary", summary}};
 }
 
+Json tracerJson(const BenchArgs& args) {
+  const std::vector<bench::TracerRow> rows = bench::measureTracer(args.truth.value_or("bench/truth"), 1);
+  Json all = Json::array();
+  if (!args.json) {
+    fmt::print(
+        "The reference renderer on one thread, {} paths at every seventh pixel, processor time without what "
+        "bounds of the density take once\n\n",
+        bench::kTracerPaths);
+    fmt::print(
+        "| scene | paths a second | scatterings a second | deviation of a path | hours to 2 % at 320x180 | "
+        "bounds, s | luminance, cd/m2 |\n|---|---:|---:|---:|---:|---:|---:|\n");
+  }
+  for (const bench::TracerRow& r : rows) {
+    if (!args.json)
+      fmt::print("| {} | {:.0f} | {:.0f} | {:.2f} | {:.1f} | {:.1f} | {:.0f} +- {:.0f} |\n", r.scene,
+                 r.pathsPerS, r.eventsPerS, r.deviation, r.hoursTo2Percent, r.boundsS, r.mean, r.error);
+    all.push_back({{"scene", r.scene},
+                   {"paths_per_s", r.pathsPerS},
+                   {"scatterings_per_s", r.eventsPerS},
+                   {"deviation", r.deviation},
+                   {"hours_to_2_percent", r.hoursTo2Percent},
+                   {"bounds_s", r.boundsS},
+                   {"mean_cd_m2", r.mean},
+                   {"error_cd_m2", r.error}});
+  }
+  return {{"paths_a_pixel", bench::kTracerPaths}, {"scenes", all}};
+}
+
 struct Subject {
   const char* name;
   Json (*measure)(const BenchArgs& args);
   bool unasked;  // measured where no name is given
 };
-constexpr std::array<Subject, 4> kSubjects = {{{"noise", noiseJson, true},
+constexpr std::array<Subject, 5> kSubjects = {{{"noise", noiseJson, true},
                                                {"frame", frameJson, true},
                                                {"splat", splatJson, true},
-                                               {"truth", truthJson, false}}};
+                                               {"truth", truthJson, false},
+                                               {"tracer", tracerJson, false}}};
 
 }  // namespace
 
@@ -184,9 +214,13 @@ int runBench(const BenchArgs& args) {
   for (const std::string& name : args.names)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw UsageError("bench: there is no benchmark \"" + name + "\"" + didYouMean(name, names));
-  if ((args.truth || args.pictures) &&
-      std::find(args.names.begin(), args.names.end(), "truth") == args.names.end())
-    throw UsageError("bench: --truth and --pictures are for truth; expected welkin bench truth");
+  auto asked = [&](const char* name) {
+    return std::find(args.names.begin(), args.names.end(), name) != args.names.end();
+  };
+  if (args.truth && !asked("truth") && !asked("tracer"))
+    throw UsageError("bench: --truth is for truth and tracer; expected welkin bench truth");
+  if (args.pictures && !asked("truth"))
+    throw UsageError("bench: --pictures is for truth; expected welkin bench truth");
   const Machine machine;
   Json all = {{"processor", machine.processor}, {"threads", machine.threads}};
   if (!args.json) fmt::print("{}, {} threads\n", machine.processor, machine.threads);

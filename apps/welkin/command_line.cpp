@@ -342,12 +342,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
   benchApp
       ->add_option("name", bench.names,
                    "noise, frame, splat: all of them without a name; truth: how near the marched renderer "
-                   "comes to the reference "
-                   "renderer")
+                   "comes to the reference renderer; tracer: how fast that one is")
       ->type_name("NAME");
   benchApp->add_flag("--json", bench.json, "as JSON");
   add(benchApp, "--truth", bench.truth, "FOLDER",
-      "of truth: scenes and what the reference renderer makes of them (default bench/truth)");
+      "of truth and tracer: scenes and what the reference renderer makes of them (default bench/truth)");
   add(benchApp, "--pictures", bench.pictures, "FOLDER",
       "of truth: a PNG of each scene: the truth, the fast picture, where it is too dark and too bright");
 

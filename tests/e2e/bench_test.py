@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`welkin bench truth`: the table, its pictures, and bad input. Times are nobody's test."""
+"""`welkin bench truth` and `tracer`: tables, pictures, and bad input. Times are nobody's test."""
 import json
 import pathlib
 import shutil
@@ -30,6 +30,18 @@ class Truth(ProgramTest):
             self.assertAlmostEqual(truth["summary"][name]["relative"], scene[name]["relative"])
         self.assertTrue((self.folder / "strips" / "stratus_overcast.png").read_bytes().startswith(b"\x89PNG"))
 
+    def test_the_tracer(self):
+        tracer = json.loads(self.succeed("bench", "tracer", "--truth", "truth", "--json"))["tracer"]
+        (scene,) = tracer["scenes"]
+        self.assertEqual(scene["scene"], "stratus_overcast")
+        # Light is scattered many times under an overcast, and paths differ.
+        self.assertGreater(scene["scatterings_per_s"], 10 * scene["paths_per_s"])
+        self.assertGreater(scene["deviation"], 0.5)
+        hours = 320 * 180 * (scene["deviation"] / 0.02) ** 2 / scene["paths_per_s"] / 3600
+        self.assertAlmostEqual(scene["hours_to_2_percent"] / hours, 1.0, places=3)
+        # The truth's mean luminance is 12800 cd/m2.
+        self.assertLess(abs(scene["mean_cd_m2"] - 12800), 5 * scene["error_cd_m2"])
+
     def test_every_scene_has_its_truth(self):
         scenes = sorted(p.stem for p in TRUTH.glob("*.toml"))
         self.assertGreaterEqual(len(scenes), 12)
@@ -39,7 +51,9 @@ class Truth(ProgramTest):
 
     def test_bad_input(self):
         self.fail_with(2, "expected welkin bench truth", "bench", "noise", "--truth", "truth")
-        self.fail_with(1, "none: no scenes", "bench", "truth", "--truth", "none")
+        self.fail_with(2, "--pictures is for truth", "bench", "tracer", "--pictures", "strips")
+        for name in ("truth", "tracer"):
+            self.fail_with(1, "none: no scenes", "bench", name, "--truth", "none")
         (self.folder / "truth" / "stratus_overcast.exr").unlink()
         self.fail_with(1, "stratus_overcast.exr", "bench", "truth", "--truth", "truth")
         shutil.copy(TRUTH / "cirrus_towards.exr", self.folder / "truth" / "stratus_overcast.exr")

@@ -16,6 +16,9 @@ namespace {
 constexpr double kStepM = 20e3;  // longest; a chord of it sags by 8 m
 constexpr int kMostPieces = 24;
 
+// Of the table of extinctions: between two entries an exponential of 1200 m is a line within 4e-5.
+constexpr double kShortM = 500.0, kEntryM = 20.0, kEntriesTopM = 25e3;
+
 // Of AirToLight.
 constexpr int kHeights = 200, kCosines = 160;
 constexpr double kTableTopM = 20e3, kCosineReach = 0.04;
@@ -55,6 +58,8 @@ Air::Air(const sky::AtmosphereUniforms& u)
            (1.0 - static_cast<double>(sky::shared::kHazePeakWeight));
   const glm::vec3 sum = u.rayleighScattering + u.aerosolExtinction + u.ozoneAbsorption;
   empty_ = sum.x + sum.y + sum.z <= 0.0f;
+  for (double h = 0.0; h <= kEntriesTopM + 2.0 * kEntryM; h += kEntryM)
+    extinctions_.push_back(at(h).extinction);
 }
 
 Air::Medium Air::at(double heightM) const {
@@ -95,6 +100,23 @@ glm::dvec3 Air::opticalDepth(const Sphere& earth, const Ray& ray, double t) cons
   }
   return glm::dvec3(u_.rayleighScattering) * columns.rayleigh +
          glm::dvec3(u_.aerosolExtinction) * columns.aerosol + glm::dvec3(u_.ozoneAbsorption) * columns.ozone;
+}
+
+glm::dvec3 Air::transmittance(const Sphere& earth, const Ray& ray, double t) const {
+  const double h0 = std::max(earth.height(ray.from), 0.0);
+  if (t > kShortM || h0 > kEntriesTopM - kShortM) return glm::exp(-opticalDepth(earth, ray, t));
+  const double h1 = std::max(earth.height(ray.at(t)), 0.0);
+  auto extinction = [&](double h) {
+    const double x = h / kEntryM;
+    const auto i = static_cast<std::size_t>(x);
+    return extinctions_[i] + (extinctions_[i + 1] - extinctions_[i]) * (x - static_cast<double>(i));
+  };
+  // Two points of Gauss.
+  constexpr double kFirst = 0.21132486540518712;
+  const glm::dvec3 tau =
+      0.5 * t * (extinction(h0 + kFirst * (h1 - h0)) + extinction(h1 + kFirst * (h0 - h1)));
+  if (std::max({tau.x, tau.y, tau.z}) > 0.05) return glm::exp(-tau);
+  return 1.0 - tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0)));  // the series of exp(-tau)
 }
 
 glm::dvec3 Air::opticalDepthToSpace(const Sphere& earth, const Ray& ray) const {

@@ -30,6 +30,9 @@ class Air {
   // Optical depth of the stretch [0, t] of a ray within the air. Steps of the exact integral of an
   // exponential along the curved way: within 2e-4.
   glm::dvec3 opticalDepth(const Sphere& earth, const Ray& ray, double t) const;
+  // The transmittance of that stretch; of one as short as most are, by way of a table over height: within
+  // 1e-5.
+  glm::dvec3 transmittance(const Sphere& earth, const Ray& ray, double t) const;
   // To space; nothing is known of the ground.
   glm::dvec3 opticalDepthToSpace(const Sphere& earth, const Ray& ray) const;
 
@@ -56,6 +59,7 @@ class Air {
   double ground_, top_;
   double fineG_ = 0.0;  // of the haze's wide lobe
   bool empty_ = false;
+  std::vector<glm::dvec3> extinctions_;  // by height above the ground
 };
 
 // Transmittance to space towards a light's disc from where clouds are, tabulated over height and the cosine

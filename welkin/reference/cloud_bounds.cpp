@@ -2,6 +2,7 @@
 #include "welkin/reference/cloud_bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 
@@ -86,13 +87,22 @@ Interval TexelExtremes::over(glm::vec3 low, glm::vec3 high) const {
   auto cells = [&](int a) { return (last[a] >> level) - (first[a] >> level) + 1; };
   while (level + 1 < levels_.size() && std::max({cells(0), cells(1), cells(2)}) > kMostCells) ++level;
   const Level& l = levels_[level];
+  // Where the cells of each side stand.
+  std::array<int, kMostCells + 1> at[3];
+  int n[3] = {1, 1, 1};
+  for (int a = 0; a < 3; ++a) {
+    const int begin = first[a] >> level;
+    n[a] = std::min((last[a] >> level) - begin + 1, l.n[a]);
+    for (int i = 0, x = ((begin % l.n[a]) + l.n[a]) % l.n[a]; i < n[a]; ++i) {
+      at[a][static_cast<std::size_t>(i)] = x;
+      if (++x == l.n[a]) x = 0;
+    }
+  }
   Interval all{1e30f, -1e30f};
-  auto wrapped = [&](int i, int a) { return ((i % l.n[a]) + l.n[a]) % l.n[a]; };
-  for (int k = first[2] >> level; k <= last[2] >> level; ++k)
-    for (int j = first[1] >> level; j <= last[1] >> level; ++j) {
-      const int row = (wrapped(k, 2) * l.n[1] + wrapped(j, 1)) * l.n[0];
-      for (int i = first[0] >> level; i <= last[0] >> level; ++i)
-        all = united(all, l.cells[static_cast<std::size_t>(row + wrapped(i, 0))]);
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j) {
+      const Interval* row = &l.cells[static_cast<std::size_t>((at[2][k] * l.n[1] + at[1][j]) * l.n[0])];
+      for (int i = 0; i < n[0]; ++i) all = united(all, row[at[0][i]]);
     }
   return all;
 }
@@ -152,6 +162,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
                                                            amount(s.high, risesUp ? h.high : h.low)}
                                                 : Interval{};
   if (s.high + 2.5f * amounts.high + 2.0f * l.detailAmount <= 0.0f) return {};
+  bool clear = s.low + 2.5f * amounts.low + 2.0f * l.detailAmount <= slack;  // somewhere, maybe
 
   // cloudExtinctionFrom.
   const Interval qx = 1.0f / l.shapeStretch * p.x, qy = p.y, qz{box.low.z, box.high.z};
@@ -162,6 +173,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   };
   s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
   if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};
+  clear = clear || s.low + 2.0f * l.detailAmount <= slack;
   if (l.detailAmount > 0.0f && s.low < l.edge + 2.0f * l.detailAmount) {
     const Interval byHeight = shifted((1.0f - l.shapeAtBase) * Interval{glm::smoothstep(0.0f, 0.2f, h.low),
                                                                         glm::smoothstep(0.0f, 0.2f, h.high)},
@@ -171,12 +183,17 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   }
   s = {s.low - slack, s.high + slack};
   if (s.high <= 0.0f) return {};
-  const float body = std::clamp(s.high / l.edge, 0.0f, 1.0f);
-  const float vertical =
+  const float thin =
+      glm::smoothstep(0.0f, l.bottomSoft, h.low) * glm::smoothstep(0.0f, l.topSoft, 1.0f - h.high);
+  const float thick =
       glm::smoothstep(0.0f, l.bottomSoft, h.high) * glm::smoothstep(0.0f, l.topSoft, 1.0f - h.low);
   auto lift = [&](float height) { return 1.0f + (0.4f + 0.9f * std::sqrt(height) - 1.0f) * l.lift; };
-  const float highest = l.extinction * body * vertical * std::max(lift(h.low), lift(h.high));
-  return {highest * (1.0f + kRounding), s.low >= l.edge};
+  const auto [less, more] = std::minmax({lift(h.low), lift(h.high)});
+  auto extinction = [&](float surface, float vertical, float lifted) {
+    return l.extinction * std::clamp(surface / l.edge, 0.0f, 1.0f) * vertical * lifted;
+  };
+  return {extinction(s.high, thick, more) * (1.0f + kRounding),
+          clear ? 0.0f : std::max(extinction(s.low, thin, less) * (1.0f - kRounding), 0.0f), s.low >= l.edge};
 }
 
 }  // namespace welkin::reference

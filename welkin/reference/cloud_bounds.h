@@ -43,8 +43,8 @@ class CloudBounds {
   explicit CloudBounds(const field::CloudField& field);
 
   struct Layer {
-    float highest = 0.0f;  // extinction, 1/m
-    bool full = false;     // all of the box is so deep in the cloud that only height counts
+    float highest = 0.0f, lowest = 0.0f;  // extinction, 1/m
+    bool full = false;                    // all of the box is so deep in the cloud that only height counts
   };
   Layer layer(std::size_t index, const CloudBox& box) const;
 

@@ -8,9 +8,11 @@
 // Participating Media" (transmittance). Majorants are local: majorant_grid.h.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "welkin/core/random.h"
+#include "welkin/reference/cloud_density.h"
 #include "welkin/reference/majorant_grid.h"
 #include "welkin/reference/sphere.h"
 
@@ -19,12 +21,15 @@ namespace welkin::reference {
 class CloudMedium {
  public:
   // field: outlives this. layers: indices of those that are traced; ice: whether a layer of the field is.
-  CloudMedium(const field::CloudField& field, const std::vector<int>& layers, std::vector<bool> ice);
+  CloudMedium(const field::CloudField& field, const std::vector<int>& layers, const std::vector<bool>& ice);
 
   struct Collision {
     double t = 0.0;  // along the ray
     bool ice = false;
   };
+  // Rays end at the ground, or at `end` before it.
+  static constexpr double kToGround = std::numeric_limits<double>::infinity();
+
   // The first collision in [0, end), or none.
   std::optional<Collision> collide(const Ray& ray, double end, Random& random) const;
 
@@ -41,18 +46,16 @@ class CloudMedium {
   struct Point {
     float extinction = 0.0f, ice = 0.0f;  // all, and the ice of it
   };
-  Point pointIn(const MajorantGrid::Brick& brick, const glm::dvec3& p) const;
+  using Bounds = MajorantGrid::Bounds;
+  Point pointIn(unsigned layers, const glm::dvec3& p) const;
 
-  // Calls f(brick, t0, t1) for the bricks along [0, end) that may have cloud, until it returns true.
+  // Calls f(bounds, layers, t0, t1) for the cells of the grid along [0, end) that may have cloud, until it
+  // returns true.
   template <class F>
   void walk(const Ray& ray, double end, F&& f) const;
 
-  // Calls f(t, majorant, point) at tentative collisions along [0, end), until it returns true.
-  template <class F>
-  void track(const Ray& ray, double end, Random& random, F&& f) const;
-
-  const field::CloudField& field_;
-  std::vector<bool> ice_;
+  CloudDensity density_;
+  unsigned ice_ = 0;  // bit i for the field's layer i
   Sphere earth_;
   std::optional<MajorantGrid> grid_;  // none: no layers
 };

@@ -2,47 +2,50 @@
 #include "welkin/reference/majorant_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 
 namespace welkin::reference {
 namespace {
 
-constexpr float kTileM = 2048.0f;
-constexpr int kTiles = static_cast<int>(2.0f * MajorantGrid::kReachM / kTileM);  // a side
 constexpr float kGuideM = 10.0f;
 constexpr float kThinnestSliceM = 30.0f, kThickestSliceM = 200.0f;
 constexpr int kSlicesOfLayer = 28;
+// A brick is divided where light would meet so many needless collisions on its way across it, about.
+constexpr float kNeedless = 0.5f;
+constexpr float kVoxelM = 32.0f;         // high, about
+constexpr float kStepsAnOctave = 16.0f;  // of codes: 4.4 % apart
 
-constexpr std::uint64_t kUnknown = ~std::uint64_t{0};
-
-std::uint64_t packed(float majorant, unsigned layers, unsigned full) {
-  return std::uint64_t{std::bit_cast<std::uint32_t>(majorant)} | std::uint64_t{layers} << 32 |
-         std::uint64_t{full} << 40;
+std::size_t blockedSize(int across, int high) {
+  return static_cast<std::size_t>(across * across * ((high + 1) & ~1));
 }
 
 }  // namespace
 
-struct MajorantGrid::Tile {
-  glm::vec2 low{0.0f};
-  int side = 1;  // bricks
-  float brickM = 0.0f;
-  std::vector<std::uint8_t> clear;                         // by slice: no cloud anywhere in the tile
-  std::vector<float> clearLow, clearHigh;                  // how far the slices around are clear too
-  mutable std::vector<std::atomic<std::uint64_t>> bricks;  // by slice, row, column
-};
+// Takes no memory before it is written to.
+MajorantGrid::Codes MajorantGrid::zeros(std::size_t n) {
+  Codes codes(static_cast<std::uint16_t*>(std::calloc(n, sizeof(std::uint16_t))));
+  if (!codes) throw std::bad_alloc();
+  return codes;
+}
 
 MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> layers)
     : bounds_(field), layers_(std::move(layers)), tiles_(static_cast<std::size_t>(kTiles) * kTiles) {
   assert(!layers_.empty());
   std::vector<float> cuts;
-  float thinnest = 1e9f;
+  float thinnest = 1e9f, most = 0.0f;
   for (const int i : layers_) {
     const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
     cuts.insert(cuts.end(), {l.baseM, l.topM});
     thinnest = std::min(thinnest, l.topM - l.baseM);
+    most +=
+        bounds_.layer(static_cast<std::size_t>(i), {{-1e9f, -1e9f, l.baseM}, {1e9f, 1e9f, l.topM}}).highest;
   }
+  for (std::size_t i = 1; i < steps_.size(); ++i)
+    steps_[i] = 1.01f * most * std::exp2((static_cast<float>(i) - 255.0f) / kStepsAnOctave);
+  steps_[1] = 0.0f;  // of kClear; the least may be 0 or 1
   std::sort(cuts.begin(), cuts.end());
   const float sliceM = std::clamp(thinnest / kSlicesOfLayer, kThinnestSliceM, kThickestSliceM);
   edges_.push_back(cuts.front());
@@ -52,6 +55,20 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     const int n = std::max(1, static_cast<int>(std::ceil((to - from) / sliceM)));
     for (int i = 1; i <= n; ++i)
       edges_.push_back(i == n ? to : from + (to - from) * static_cast<float>(i) / static_cast<float>(n));
+  }
+  for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
+    Slice slice;
+    slice.voxelsHigh =
+        std::clamp(static_cast<int>(std::lround((edges_[k + 1] - edges_[k]) / kVoxelM)), 1, kVoxelsAcross);
+    slice.codes = blockedSize(kVoxelsAcross, slice.voxelsHigh);
+    slice.codesBelow = columnCodes_;
+    columnCodes_ += slice.codes;
+    for (const int i : layers_) {
+      const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
+      if (l.baseM < edges_[k + 1] + kMarginM && l.topM > edges_[k] - kMarginM)
+        slice.layers |= static_cast<std::uint8_t>(1u << i);
+    }
+    slices_.push_back(slice);
   }
   int slice = 0;
   for (float z = edges_.front(); z < edges_.back() + kGuideM; z += kGuideM) {
@@ -74,78 +91,72 @@ int MajorantGrid::sliceAt(float z) const {
   return slice;
 }
 
-std::uint64_t MajorantGrid::compute(const CloudBox& box) const {
+std::uint16_t MajorantGrid::compute(const CloudBox& box) const {
   const CloudBox wide{box.low - kMarginM, box.high + kMarginM};
-  float majorant = 0.0f;
-  unsigned there = 0, full = 0;
+  Bounds sum;
   for (const int i : layers_) {
     const CloudBounds::Layer l = bounds_.layer(static_cast<std::size_t>(i), wide);
-    if (l.highest <= 0.0f) continue;
-    majorant += l.highest;
-    there |= 1u << i;
-    if (l.full) full |= 1u << i;
+    sum.majorant += l.highest;
+    sum.minorant += l.lowest;
   }
-  return packed(majorant, there, full);
+  if (sum.majorant <= 0.0f) return kClear;
+  const auto most = std::lower_bound(steps_.begin() + 2, steps_.end() - 1, sum.majorant) - steps_.begin();
+  const auto least = std::upper_bound(steps_.begin() + 1, steps_.end(), sum.minorant) - steps_.begin() - 1;
+  return static_cast<std::uint16_t>(most << 8 | least);
 }
 
-const MajorantGrid::Tile& MajorantGrid::tileAt(int x, int y) const {
-  std::atomic<Tile*>& slot = tiles_[static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x)];
-  if (Tile* tile = slot.load(std::memory_order_acquire)) return *tile;
+std::unique_ptr<MajorantGrid::Tile> MajorantGrid::makeTile(int x, int y) const {
   auto tile = std::make_unique<Tile>();
   tile->low = {static_cast<float>(x) * kTileM - kReachM, static_cast<float>(y) * kTileM - kReachM};
   const float away = std::max(std::abs(tile->low.x + 0.5f * kTileM), std::abs(tile->low.y + 0.5f * kTileM));
-  tile->side = away < 12e3f ? 16 : away < 40e3f ? 8 : away < 120e3f ? 4 : 2;
+  tile->side = away < 12e3f ? 16 : away < 40e3f ? 8 : 4;
   tile->brickM = kTileM / static_cast<float>(tile->side);
-  const std::size_t slices = edges_.size() - 1;
-  for (std::size_t k = 0; k < slices; ++k) {
-    const CloudBox whole{{tile->low.x, tile->low.y, edges_[k]},
-                         {tile->low.x + kTileM, tile->low.y + kTileM, edges_[k + 1]}};
-    tile->clear.push_back((compute(whole) >> 32 & 0xff) == 0 ? 1 : 0);
+  tile->needless = kNeedless / tile->brickM;
+  const std::size_t slices = slices_.size();
+  tile->clear.resize(slices);
+  for (std::size_t k = 0, first = 0; k <= slices; ++k) {
+    if (k < slices && compute({{tile->low.x, tile->low.y, edges_[k]},
+                               {tile->low.x + kTileM, tile->low.y + kTileM, edges_[k + 1]}}) == kClear)
+      continue;
+    for (std::size_t i = first; i < k; ++i)
+      tile->clear[i] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(k)};
+    first = k + 1;
   }
-  tile->clearLow.assign(edges_.begin(), edges_.end() - 1);
-  tile->clearHigh.assign(edges_.begin() + 1, edges_.end());
-  for (std::size_t k = 1; k < slices; ++k)
-    if (tile->clear[k] && tile->clear[k - 1]) tile->clearLow[k] = tile->clearLow[k - 1];
-  for (std::size_t k = slices - 1; k-- > 0;)
-    if (tile->clear[k] && tile->clear[k + 1]) tile->clearHigh[k] = tile->clearHigh[k + 1];
-  const std::size_t bricks = slices * static_cast<std::size_t>(tile->side * tile->side);
-  tile->bricks = std::vector<std::atomic<std::uint64_t>>(bricks);
-  for (auto& brick : tile->bricks) brick.store(kUnknown, std::memory_order_relaxed);
-  Tile* none = nullptr;
-  if (slot.compare_exchange_strong(none, tile.get(), std::memory_order_acq_rel)) return *tile.release();
-  return *none;  // another thread's, which is the same
+  tile->bricks = zeros(blockedSize(tile->side, static_cast<int>(slices)));
+  tile->voxels = zeros(columnCodes_ * static_cast<std::size_t>(tile->side * tile->side));
+  return tile;
 }
 
-MajorantGrid::Brick MajorantGrid::at(glm::vec3 q) const {
+const MajorantGrid::Tile* MajorantGrid::tileAt(const glm::vec3& q) const {
   const float fx = (q.x + kReachM) / kTileM, fy = (q.y + kReachM) / kTileM;
-  if (!(fx >= 0.0f && fy >= 0.0f && fx < static_cast<float>(kTiles) && fy < static_cast<float>(kTiles))) {
-    constexpr float kFar = 1e9f;
-    return {0.0f, 0, 0, {glm::vec3(-kFar), glm::vec3(kFar)}};
-  }
-  const Tile& tile = tileAt(static_cast<int>(fx), static_cast<int>(fy));
-  const auto slice = static_cast<std::size_t>(sliceAt(q.z));
-  if (tile.clear[slice])
-    return {0.0f,
-            0,
-            0,
-            {{tile.low.x, tile.low.y, tile.clearLow[slice]},
-             {tile.low.x + kTileM, tile.low.y + kTileM, tile.clearHigh[slice]}}};
-  const int i = std::clamp(static_cast<int>((q.x - tile.low.x) / tile.brickM), 0, tile.side - 1),
-            j = std::clamp(static_cast<int>((q.y - tile.low.y) / tile.brickM), 0, tile.side - 1);
-  const glm::vec3 low(tile.low.x + tile.brickM * static_cast<float>(i),
-                      tile.low.y + tile.brickM * static_cast<float>(j), edges_[slice]);
-  const CloudBox box{low, {low.x + tile.brickM, low.y + tile.brickM, edges_[slice + 1]}};
-  std::atomic<std::uint64_t>& entry =
-      tile.bricks[(slice * static_cast<std::size_t>(tile.side) + static_cast<std::size_t>(j)) *
-                      static_cast<std::size_t>(tile.side) +
-                  static_cast<std::size_t>(i)];
-  std::uint64_t bits = entry.load(std::memory_order_relaxed);
-  if (bits == kUnknown) {
-    bits = compute(box);
-    entry.store(bits, std::memory_order_relaxed);
-  }
-  return {std::bit_cast<float>(static_cast<std::uint32_t>(bits)), static_cast<std::uint8_t>(bits >> 32),
-          static_cast<std::uint8_t>(bits >> 40), box};
+  if (!(fx >= 0.0f && fy >= 0.0f && fx < static_cast<float>(kTiles) && fy < static_cast<float>(kTiles)))
+    return nullptr;
+  const int x = static_cast<int>(fx), y = static_cast<int>(fy);
+  std::atomic<Tile*>& slot = tiles_[static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x)];
+  if (Tile* tile = slot.load(std::memory_order_acquire)) return tile;
+  std::unique_ptr<Tile> tile = makeTile(x, y);
+  Tile* none = nullptr;
+  if (slot.compare_exchange_strong(none, tile.get(), std::memory_order_acq_rel)) return tile.release();
+  return none;  // another thread's, which is the same
+}
+
+glm::ivec3 MajorantGrid::brickAt(const Tile& tile, const glm::vec3& q) const {
+  auto along = [&](float x) { return std::clamp(static_cast<int>(x / tile.brickM), 0, tile.side - 1); };
+  return {along(q.x - tile.low.x), along(q.y - tile.low.y), sliceAt(q.z)};
+}
+
+MajorantGrid::Cell MajorantGrid::at(glm::vec3 q) const {
+  const Tile* tile = tileAt(q);
+  constexpr float kFar = 1e9f;
+  if (!tile) return {{}, 0, {glm::vec3(-kFar), glm::vec3(kFar)}};
+  const glm::ivec3 i = brickAt(*tile, q);
+  const std::uint8_t layers = slices_[static_cast<std::size_t>(i.z)].layers;
+  const Bounds bounds = boundsOf(brickCode(*tile, i));
+  if (bounds.majorant - bounds.minorant <= tile->needless) return {bounds, layers, brickBox(*tile, i)};
+  const Brick brick = brickOf(*tile, i);
+  const glm::ivec3 v = glm::clamp(glm::ivec3((q - brick.low) / brick.sizeM), glm::ivec3(0), brick.n - 1);
+  const glm::vec3 low = brick.low + brick.sizeM * glm::vec3(v);
+  return {boundsOf(voxelCode(brick, v)), layers, {low, low + brick.sizeM}};
 }
 
 }  // namespace welkin::reference

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Upper bounds of the clouds' extinction on a grid of bricks, made where light comes by: what null-collision
-// tracking steps by. Bricks are some hundred metres across near the eye and wider far from it; slices between
-// the layers' bases and tops are cut to match.
+// Bounds of the clouds' extinction on a grid: what null-collision tracking steps by. Tiles of 2 km hold
+// bricks of some hundred metres near the eye and wider ones far from it; slices between the layers' bases and
+// tops are cut to match. A brick that holds an edge of dense cloud is divided into voxels. Bounds are made
+// where light comes by, two bytes a box, boxes near each other in one cache line.
 //
-// Safe to use from several threads: a brick's bound does not depend on who asks first.
+// Safe to use from several threads: bounds do not depend on who asks first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,6 +23,19 @@
 #include "welkin/reference/cloud_bounds.h"
 
 namespace welkin::reference {
+
+// A straight line of cloud positions, from + slope t.
+struct CloudLine {
+  glm::vec3 from, slope, inverse;  // inverse: of the slope; 0 where it has none
+
+  CloudLine(const glm::vec3& start, const glm::vec3& along) : from(start), slope(along) {
+    for (int k = 0; k < 3; ++k) inverse[k] = std::abs(slope[k]) > 1e-9f ? 1.0f / slope[k] : 0.0f;
+  }
+  // Where it crosses a plane across axis k; never: far away.
+  float crosses(int k, float side) const {
+    return inverse[k] != 0.0f ? (side - from[k]) * inverse[k] : 1e30f;
+  }
+};
 
 class MajorantGrid {
  public:
@@ -33,28 +53,222 @@ class MajorantGrid {
   float highM() const { return edges_.back(); }
   std::span<const int> layers() const { return layers_; }
 
-  struct Brick {
-    float majorant = 0.0f;    // 1/m
-    std::uint8_t layers = 0;  // those that may have cloud here: bit i for the field's layer i
-    std::uint8_t full = 0;    // those of them that are full everywhere here
-    CloudBox box;             // in which all of this holds
+  struct Bounds {
+    float majorant = 0.0f, minorant = 0.0f;  // 1/m
   };
-  // q: within lowM() and highM(); else the answer is of the nearest slice. Beyond kReachM there is no cloud.
-  Brick at(glm::vec3 q) const;
+  // What holds all over a box; layers: that may reach into its slice, bit i for the field's layer i.
+  struct Cell {
+    Bounds bounds;
+    std::uint8_t layers = 0;
+    CloudBox box;
+  };
+  // The smallest cell at q, which is within lowM() and highM(); else the answer is of the nearest slice.
+  // Beyond kReachM there is no cloud.
+  Cell at(glm::vec3 q) const;
+
+  // Calls f(bounds, layers, t0, t1) for the cells along [0, length] of a line, those without cloud left out,
+  // until it returns true; which it then returns.
+  template <class F>
+  bool walk(const CloudLine& line, float length, F&& f) const;
 
   static constexpr float kReachM = 1024e3f;  // of the grid from the eye, east and north
 
  private:
-  struct Tile;
-  const Tile& tileAt(int x, int y) const;
-  std::uint64_t compute(const CloudBox& box) const;
+  static constexpr float kTileM = 2048.0f;
+  static constexpr int kTiles = static_cast<int>(2.0f * kReachM / kTileM);  // a side
+  static constexpr int kVoxelsAcross = 4;                                   // a multiple of 4
+  static constexpr float kNudgeM = 2e-3f;                                   // over a side of a box
+  // A code has steps of the greatest extinction in its high byte and of the least in its low one. 0 is a box
+  // that nobody has asked for.
+  static constexpr std::uint16_t kUnknown = 0, kClear = 0x100;
+
+  struct Slice {
+    int voxelsHigh = 1;
+    std::size_t codes = 0;       // of the voxels of a brick
+    std::size_t codesBelow = 0;  // of the bricks of one column below
+    std::uint8_t layers = 0;
+  };
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
+  using Codes = std::unique_ptr<std::uint16_t[], Free>;
+  static Codes zeros(std::size_t n);
+  struct Run {  // slices [low, high) without cloud; low == high: there may be
+    std::uint16_t low = 0, high = 0;
+  };
+  struct Tile {
+    glm::vec2 low{0.0f};
+    int side = 4;  // bricks, a multiple of 4
+    float brickM = 0.0f;
+    float needless = 0.0f;   // a brick is divided whose bounds are farther apart, 1/m
+    std::vector<Run> clear;  // by slice: those around that have no cloud anywhere in the tile
+    Codes bricks;            // blocked
+    Codes voxels;            // by slice, row and column of bricks; then blocked
+  };
+  struct Brick {
+    glm::vec3 low, sizeM;  // of a voxel
+    glm::ivec3 n;          // voxels
+    std::uint16_t* codes;
+  };
+
+  // Where a box stands among others: in blocks of 4 x 4 x 2, which are 64 bytes of codes.
+  static std::size_t blocked(const glm::ivec3& i, int across) {
+    const int block = ((i.z >> 1) * (across >> 2) + (i.y >> 2)) * (across >> 2) + (i.x >> 2);
+    return static_cast<std::size_t>(block * 32 + (i.z & 1) * 16 + (i.y & 3) * 4 + (i.x & 3));
+  }
+  const Tile* tileAt(const glm::vec3& q) const;  // none: beyond reach
+  std::unique_ptr<Tile> makeTile(int x, int y) const;
+  glm::ivec3 brickAt(const Tile& tile, const glm::vec3& q) const;
   int sliceAt(float z) const;
+  std::uint16_t compute(const CloudBox& box) const;
+  Bounds boundsOf(std::uint16_t code) const { return {steps_[code >> 8], steps_[code & 0xff]}; }
+
+  CloudBox brickBox(const Tile& tile, const glm::ivec3& i) const {
+    const auto k = static_cast<std::size_t>(i.z);
+    const glm::vec2 low = tile.low + tile.brickM * glm::vec2(i.x, i.y);
+    return {{low.x, low.y, edges_[k]}, {low.x + tile.brickM, low.y + tile.brickM, edges_[k + 1]}};
+  }
+  Brick brickOf(const Tile& tile, const glm::ivec3& i) const {
+    const CloudBox box = brickBox(tile, i);
+    const Slice& slice = slices_[static_cast<std::size_t>(i.z)];
+    const glm::ivec3 n(kVoxelsAcross, kVoxelsAcross, slice.voxelsHigh);
+    const auto bricks = static_cast<std::size_t>(tile.side * tile.side);
+    return {box.low, (box.high - box.low) / glm::vec3(n), n,
+            &tile.voxels[slice.codesBelow * bricks +
+                         static_cast<std::size_t>(i.y * tile.side + i.x) * slice.codes]};
+  }
+  // What is known of a box, made if need be.
+  template <class Box>
+  std::uint16_t known(std::uint16_t& code, Box&& box) const {
+    const std::atomic_ref<std::uint16_t> entry(code);
+    std::uint16_t c = entry.load(std::memory_order_relaxed);
+    if (c == kUnknown) {
+      c = compute(box());
+      entry.store(c, std::memory_order_relaxed);
+    }
+    return c;
+  }
+  std::uint16_t brickCode(const Tile& tile, const glm::ivec3& i) const {
+    return known(tile.bricks[blocked(i, tile.side)], [&] { return brickBox(tile, i); });
+  }
+  std::uint16_t voxelCode(const Brick& brick, const glm::ivec3& i) const {
+    return known(brick.codes[blocked(i, kVoxelsAcross)], [&] {
+      const glm::vec3 low = brick.low + brick.sizeM * glm::vec3(i);
+      return CloudBox{low, low + brick.sizeM};
+    });
+  }
+
+  template <class F>
+  bool walkTile(const Tile& tile, const CloudLine& line, float& t, float end, F&& f) const;
+  template <class F>
+  bool walkBrick(const Brick& brick, const CloudLine& line, float t, float end, F&& f) const;
 
   CloudBounds bounds_;
   std::vector<int> layers_;
   std::vector<float> edges_;  // of slices, rising
+  std::vector<Slice> slices_;
   std::vector<int> sliceGuide_;
+  std::size_t columnCodes_ = 0;     // of the voxels of a column of bricks
+  std::array<float, 256> steps_{};  // of extinction, rising
   mutable std::vector<std::atomic<Tile*>> tiles_;
 };
+
+// J. Amanatides and A. Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing", at each of three sizes.
+template <class F>
+bool MajorantGrid::walk(const CloudLine& line, float length, F&& f) const {
+  for (float t = 0.0f; t < length;) {
+    const glm::vec3 q = line.from + line.slope * (t + kNudgeM);
+    const Tile* tile = tileAt(q);
+    if (!tile) return false;
+    float end = length;
+    for (int k = 0; k < 2; ++k)
+      end = std::min(end, line.crosses(k, tile->low[k] + (line.inverse[k] > 0.0f ? kTileM : 0.0f)));
+    const float before = t;
+    if (const Run run = tile->clear[static_cast<std::size_t>(sliceAt(q.z))]; run.low < run.high) {
+      t = std::min(end, line.crosses(2, line.inverse.z > 0.0f ? edges_[run.high] : edges_[run.low]));
+    } else if (walkTile(*tile, line, t, end, f)) {
+      return true;
+    }
+    t = std::max(t, before + kNudgeM);
+  }
+  return false;
+}
+
+// Leaves t where the line leaves the tile, or what is clear of it begins.
+template <class F>
+bool MajorantGrid::walkTile(const Tile& tile, const CloudLine& line, float& t, float end, F&& f) const {
+  const int slices = static_cast<int>(slices_.size());
+  glm::ivec3 i = brickAt(tile, line.from + line.slope * (t + kNudgeM)), turn;
+  glm::vec3 next;   // where the line leaves through each side
+  glm::vec2 apart;  // from side to side
+  for (int k = 0; k < 3; ++k) turn[k] = line.inverse[k] > 0.0f ? 1 : -1;
+  for (int k = 0; k < 2; ++k) {
+    next[k] = line.crosses(k, tile.low[k] + tile.brickM * static_cast<float>(i[k] + (turn[k] > 0 ? 1 : 0)));
+    apart[k] = tile.brickM * std::abs(line.inverse[k]);
+  }
+  auto nextSlice = [&] {
+    return line.crosses(2, edges_[static_cast<std::size_t>(i.z + (turn.z > 0 ? 1 : 0))]);
+  };
+  next.z = nextSlice();
+  for (;;) {
+    const int k = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const float out = std::min(next[k], end);
+    if (out > t) {
+      const std::uint16_t code = brickCode(tile, i);
+      if (code != kClear) {
+        const Bounds bounds = boundsOf(code);
+        if (bounds.majorant - bounds.minorant > tile.needless) {
+          if (walkBrick(brickOf(tile, i), line, t, out, [&](const Bounds& b, float t0, float t1) {
+                return f(b, slices_[static_cast<std::size_t>(i.z)].layers, t0, t1);
+              }))
+            return true;
+        } else if (f(bounds, slices_[static_cast<std::size_t>(i.z)].layers, t, out)) {
+          return true;
+        }
+      }
+      t = out;
+    }
+    if (t >= end) return false;
+    i[k] += turn[k];
+    if (k < 2) {
+      if (i[k] < 0 || i[k] >= tile.side) return false;
+      next[k] += apart[k];
+    } else {
+      if (i.z < 0 || i.z >= slices) {  // out of the shell but for rounding
+        i.z -= turn.z;
+        next.z = 1e30f;
+        continue;
+      }
+      next.z = nextSlice();
+    }
+  }
+}
+
+template <class F>
+bool MajorantGrid::walkBrick(const Brick& brick, const CloudLine& line, float t, float end, F&& f) const {
+  glm::ivec3 i, turn;
+  glm::vec3 next, apart;
+  for (int k = 0; k < 3; ++k) {
+    const float at = (line.from[k] + line.slope[k] * (t + kNudgeM) - brick.low[k]) / brick.sizeM[k];
+    i[k] = std::clamp(static_cast<int>(at), 0, brick.n[k] - 1);
+    turn[k] = line.inverse[k] > 0.0f ? 1 : -1;
+    next[k] =
+        line.crosses(k, brick.low[k] + brick.sizeM[k] * static_cast<float>(i[k] + (turn[k] > 0 ? 1 : 0)));
+    apart[k] = brick.sizeM[k] * std::abs(line.inverse[k]);
+  }
+  for (;;) {
+    const int k = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+    const bool last = i[k] + turn[k] < 0 || i[k] + turn[k] >= brick.n[k];
+    const float out = last ? end : std::min(next[k], end);
+    if (out > t) {
+      const std::uint16_t code = voxelCode(brick, i);
+      if (code != kClear && f(boundsOf(code), t, out)) return true;
+      t = out;
+    }
+    if (last || t >= end) return false;
+    i[k] += turn[k];
+    next[k] += apart[k];
+  }
+}
 
 }  // namespace welkin::reference

@@ -38,15 +38,32 @@ PhaseSampler PhaseSampler::tabulated(const std::function<double(double)>& phase)
     s.densities_.push_back(mean);
     s.shares_.push_back(s.shares_.back() + 2.0 * kPi * mean * (b - a));
   }
-  const double total = s.integral_ = s.shares_.back();
-  for (double& d : s.densities_) d /= total;
-  for (double& c : s.shares_) c /= total;
+  s.normalise();
+  return s;
+}
+
+PhaseSampler PhaseSampler::above(double level) const {
+  assert(!edges_.empty());
+  PhaseSampler s;
+  s.edges_ = edges_;
+  s.shares_.push_back(0.0);
+  for (int i = 0; i < kSteps; ++i) {
+    s.densities_.push_back(std::max(densities_[i] - level, 0.0));
+    s.shares_.push_back(s.shares_.back() + 2.0 * kPi * s.densities_.back() * (edges_[i + 1] - edges_[i]));
+  }
+  s.normalise();
+  return s;
+}
+
+void PhaseSampler::normalise() {
+  const double total = integral_ = shares_.back();
+  for (double& d : densities_) d /= total;
+  for (double& c : shares_) c /= total;
   int step = 0;
   for (int i = 0; i < kGuides; ++i) {
-    while (step + 1 < kSteps && s.shares_[step + 1] <= static_cast<double>(i) / kGuides) ++step;
-    s.guide_.push_back(step);
+    while (step + 1 < kSteps && shares_[step + 1] <= static_cast<double>(i) / kGuides) ++step;
+    guide_.push_back(step);
   }
-  return s;
 }
 
 double PhaseSampler::density(double cosine) const {

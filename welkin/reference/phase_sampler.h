@@ -14,6 +14,9 @@ class PhaseSampler {
   static PhaseSampler henyeyGreenstein(double g);
   // Any function of the cosine, in 1/sr, as its means over narrow steps of the angle. It is normalised.
   static PhaseSampler tabulated(const std::function<double(double)>& phase);
+  // What of a tabulated one is above a level, 1/sr, step by step: nowhere more than it, nor less by more than
+  // the level.
+  PhaseSampler above(double level) const;
 
   double density(double cosine) const;  // 1/sr
   double sampleCosine(double u) const;  // u in [0, 1); rises with u
@@ -21,6 +24,8 @@ class PhaseSampler {
   double integral() const { return integral_; }  // over the sphere, of the function as it was given
 
  private:
+  void normalise();
+
   double g_ = 0.0, integral_ = 1.0;
   // Steps between cosines that rise; empty: closed form. The share of light up to each edge, the density
   // inside each step.

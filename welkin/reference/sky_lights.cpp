@@ -21,14 +21,15 @@ double sum(const glm::dvec3& v) {
 }  // namespace
 
 SkyLights::SkyLights(const scene::SkyState& state, const Air& air, const Sphere& earth)
-    : sunDirection_(glm::normalize(state.ephemeris.sun.direction)) {
+    : earth_(&earth), sunDirection_(glm::normalize(state.ephemeris.sun.direction)) {
   for (std::size_t i = 0; i < state.lights.size(); ++i) {
     const sky::Light& light = state.lights[i];
     const bool isSun = (i == 0) == state.litBySun;
     if (!(light.illuminance.y > 0.0f)) continue;
     const sky::Body& body = isSun ? state.ephemeris.sun : state.ephemeris.moon;
     const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction));
-    discs_.push_back({isSun, direction, glm::dvec3(light.illuminance), body.angularRadiusRad,
+    discs_.push_back({isSun, direction, glm::dvec3(light.illuminance), turned(direction, 0.0, 0.0),
+                      turned(direction, 0.0, 0.5 * kPi), body.angularRadiusRad,
                       isSun ? 1.0 : std::max(state.ephemeris.moonIlluminatedFraction, kLeastLit),
                       AirToLight(air, earth, direction)});
   }
@@ -40,7 +41,11 @@ LightSample SkyLights::sample(const glm::dvec3& p, Random& random) const {
     // Of a share u of the sun's light the middle x = r / radius: 1 - u = (1 - x^2)^(1 + kLimb / 2).
     const double u = unit(random);
     const double x2 = disc.isSun ? 1.0 - std::pow(1.0 - u, 1.0 / (1.0 + 0.5 * kLimb)) : u;
-    return turned(disc.direction, std::cos(disc.radius * std::sqrt(x2)), 2.0 * kPi * unit(random));
+    // The sine and cosine of so small an angle are those of its series.
+    const double angle2 = disc.radius * disc.radius * x2, phi = 2.0 * kPi * unit(random);
+    const double sine = std::sqrt(angle2) * (1.0 - angle2 / 6.0),
+                 cosine = 1.0 - angle2 * (0.5 - angle2 / 24.0);
+    return cosine * disc.direction + sine * (std::cos(phi) * disc.east + std::sin(phi) * disc.north);
   };
   const Disc& first = discs_.front();
   const glm::dvec3 direction = aimed(first);

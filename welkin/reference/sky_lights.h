@@ -24,6 +24,10 @@ class SkyLights {
 
   // One of the lights, the likelier the more of it may reach p.
   LightSample sample(const glm::dvec3& p, Random& random) const;
+  // The ground is in the way of it at p.
+  bool isBelow(const LightSample& light, const glm::dvec3& p) const {
+    return light.disc < 0 || earth_->toGround({p, light.direction}, -1.0) >= 0.0;
+  }
   // What it brings to p through the air and past the ground, times its weight: lux on a plane facing it.
   glm::dvec3 illuminance(const LightSample& light, const glm::dvec3& p) const;
   // Luminance of the discs above the air.
@@ -33,10 +37,12 @@ class SkyLights {
   struct Disc {
     bool isSun;
     glm::dvec3 direction, illuminance;
-    double radius;  // rad
-    double share;   // of the disc that is lit
+    glm::dvec3 east, north;  // unit, across the direction and each other
+    double radius;           // rad
+    double share;            // of the disc that is lit
     AirToLight through;
   };
+  const Sphere* earth_;
   glm::dvec3 sunDirection_{0.0};
   std::vector<Disc> discs_;  // that give light, as in state.lights
 };

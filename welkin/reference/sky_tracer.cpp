@@ -31,7 +31,7 @@ using field::CloudLayer;
 }  // namespace shared
 
 // A path whose throughput is below the one goes on with a chance, and with the other.
-constexpr double kRouletteBelow = 0.03, kRouletteTo = 0.1;
+constexpr double kRouletteBelow = 0.1, kRouletteTo = 0.3;
 // What droplets scatter forward beyond this, 1/sr, is their peak: see gather().
 constexpr double kPeakAbove = 0.3;
 // How often air and ground look for light by way of clouds.
@@ -101,8 +101,7 @@ struct SkyTracer::Impl {
         lights(s, air, earth),
         droplets(dropletPhase(s, settings.droplets)),
         ice(PhaseSampler::tabulated(icePhase)),
-        peak(PhaseSampler::tabulated(
-            [&](double c) { return std::max(droplets.density(c) - kPeakAbove, 0.0); })),
+        peak(droplets.above(kPeakAbove)),
         airglow(s.atmosphere->uniforms().airglow),
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM) {}
 
@@ -141,7 +140,7 @@ struct SkyTracer::Impl {
   bool meetsGround(const Ray& ray) const { return earth.toGround(ray, -1.0) >= 0.0; }
 
   glm::dvec3 throughAir(const Ray& ray, double t) const {
-    return air.empty() ? glm::dvec3(1.0) : glm::exp(-air.opticalDepth(earth, ray, t));
+    return air.empty() ? glm::dvec3(1.0) : air.transmittance(earth, ray, t);
   }
 
   // The night sky above the air: shaders/lib/atmosphere.glsl.
@@ -153,10 +152,11 @@ struct SkyTracer::Impl {
     return airglow / std::sqrt(std::max(1.0 - q * q * (1.0 - mu * mu), 1e-4));
   }
 
-  // An estimate of what clouds let through from p to space.
-  double throughClouds(const glm::dvec3& p, const glm::dvec3& way, Work& work) const {
-    const Ray ray{p, way};
-    return clouds.transmittance(ray, end(ray), work.random);
+  // Adds the light that comes to p through clouds and air, times a share of it.
+  void addLight(Work& work, const glm::dvec3& p, const LightSample& light, const glm::dvec3& share) const {
+    if (lights.isBelow(light, p)) return;
+    const double through = clouds.transmittance({p, light.direction}, CloudMedium::kToGround, work.random);
+    if (through > 0.0) work.sample.luminance += share * through * lights.illuminance(light, p);
   }
 
   // Adds what reaches the eye of the light that scatters or reflects at p, the path's throughput being for
@@ -198,8 +198,8 @@ void SkyTracer::Impl::gather(const Path& path, const glm::dvec3& p, double chain
                              Work& work) const {
   const LightSample light = lights.sample(p, work.random);
   if (light.disc < 0) return;
-  const glm::dvec3 lit = path.throughput * value(light.direction) * lights.illuminance(light, p);
-  if (sum(lit) != 0.0) work.sample.luminance += lit * throughClouds(p, light.direction, work);
+  const glm::dvec3 lit = path.throughput * value(light.direction);
+  if (sum(lit) != 0.0) addLight(work, p, light, lit);
   if (clouds.grid() && unit(work.random) < chain) gatherByPeaks(path, p, light, chain, value, work);
 }
 
@@ -222,13 +222,12 @@ void SkyTracer::Impl::gatherByPeaks(const Path& path, const glm::dvec3& p, const
   glm::dvec3 at = p;
   while (n > 0) {
     const Ray ray{at, ways[--n]};
-    const auto collision = clouds.collide(ray, end(ray), random);
+    const auto collision = clouds.collide(ray, CloudMedium::kToGround, random);
     if (!collision || collision->ice) return;  // ice has no peak
     lit *= throughAir(ray, collision->t);
     at = ray.at(collision->t);
   }
-  lit *= lights.illuminance(light, at);
-  if (sum(lit) != 0.0) work.sample.luminance += lit * throughClouds(at, light.direction, work);
+  addLight(work, at, light, lit);
 }
 
 void SkyTracer::Impl::scatterInAir(Path& path, const glm::dvec3& p, const Air::Medium& m, Work& work) const {
@@ -294,9 +293,8 @@ void SkyTracer::Impl::follow(Path path, Work& work) const {
       if (unit(random) * kRouletteTo >= most) return;
       path.throughput *= kRouletteTo / most;
     }
-    const double out = end(path.ray);
-    const auto collision = clouds.collide(path.ray, out, random);
-    const double t = collision ? collision->t : out;
+    const auto collision = clouds.collide(path.ray, CloudMedium::kToGround, random);
+    const double t = collision ? collision->t : end(path.ray);
     if (!air.empty()) {
       // One event of the two, each with the chance of its share of the light.
       const glm::dvec3 through = throughAir(path.ray, t);
@@ -332,10 +330,9 @@ SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOf
   if (near > 0.0) ray.from = ray.at(near);
 
   // The first piece is followed twice: to a scattering in the air, and to what is behind it.
-  const double out = end(ray);
-  const auto collision = clouds.collide(ray, out, work.random);
+  const auto collision = clouds.collide(ray, CloudMedium::kToGround, work.random);
   work.sample.cloud = collision.has_value();
-  const double t = collision ? collision->t : out;
+  const double t = collision ? collision->t : end(ray);
   glm::dvec3 through(1.0);
   if (!air.empty()) {
     through = throughAir(ray, t);

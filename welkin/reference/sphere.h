@@ -20,19 +20,25 @@ struct Ray {
 
 class Sphere {
  public:
-  explicit Sphere(double radiusM) : radius_(radiusM) {}
+  explicit Sphere(double radiusM) : radius_(radiusM), inverse_(1.0 / radiusM) {}
   double radiusM() const { return radius_; }
 
   glm::dvec3 centre() const { return {0.0, 0.0, -radius_}; }
   glm::dvec3 up(const glm::dvec3& p) const { return glm::normalize(p - centre()); }
   double height(const glm::dvec3& p) const {
-    const double e = excess(p);
+    const double e = excess(p), x = e * inverse_ * inverse_;
+    // Within 200 km of the ground a series is as exact as the root.
+    if (std::abs(x) < 0.06)
+      return e * inverse_ *
+             (0.5 - x * (0.125 - x * (0.0625 - x * (5.0 / 128 - x * (7.0 / 256 - x * (21.0 / 1024))))));
     return e / (std::sqrt(radius_ * radius_ + e) + radius_);
   }
   // Cosine of the angle between a direction and the zenith at p.
   double cosine(const glm::dvec3& p, const glm::dvec3& w) const {
     return along(p, w) / std::sqrt(radius_ * radius_ + excess(p));
   }
+
+  bool rises(const Ray& ray) const { return along(ray.from, ray.way) > 0.0; }
 
   // Where a line crosses the sphere of a height, near < far; false: nowhere.
   bool crossings(const Ray& ray, double heightM, double& near, double& far) const {
@@ -59,7 +65,7 @@ class Sphere {
   double along(const glm::dvec3& p, const glm::dvec3& w) const {
     return p.x * w.x + p.y * w.y + (radius_ + p.z) * w.z;
   }
-  double radius_;
+  double radius_, inverse_;
 };
 
 }  // namespace welkin::reference

@@ -64,5 +64,25 @@ TEST(PhaseSampler, TablesAreNearTheirFunction) {
   }
 }
 
+// What is left of a function beside its peak is nowhere negative nor above the level.
+TEST(PhaseSampler, ThePeakLeavesAtMostALevel) {
+  const optics::DropletPhase fit = optics::dropletPhase(16.0f);
+  const PhaseSampler all = PhaseSampler::tabulated(
+      [&](double c) { return static_cast<double>(optics::phaseDroplet(static_cast<float>(c), fit)); });
+  constexpr double kLevel = 0.3;
+  const PhaseSampler peak = all.above(kLevel);
+  EXPECT_GT(peak.integral(), 0.3);
+  EXPECT_LT(peak.integral(), 0.9);
+  int steep = 0;
+  for (int i = 0; i <= 20000; ++i) {
+    const double angle = kPi * i / 20000.0 * i / 20000.0, c = std::cos(angle);
+    const double rest = all.density(c) - peak.integral() * peak.density(c);
+    EXPECT_GE(rest, -1e-9 * all.density(c));
+    EXPECT_LE(rest, kLevel + 1e-9 * all.density(c));
+    if (all.density(c) > 100.0 * kLevel) ++steep;
+  }
+  EXPECT_GT(steep, 100);
+}
+
 }  // namespace
 }  // namespace welkin::reference

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/tracer_bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "welkin/core/error.h"
+#include "welkin/reference/sky_tracer.h"
+#include "welkin/scene/scene_file.h"
+
+namespace welkin::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPixelStride = 7;    // of all pixels in rows; odd, so that columns change
+constexpr double kDarkest = 0.01;  // of the mean of all pixels, for relative deviations, as SkyFilm has it
+
+double processorS() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+double luminanceOf(const glm::dvec3& c) {
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+struct Pixel {
+  double mean, variance;  // of a path
+};
+
+Pixel trace(const reference::SkyTracer& tracer, int x, int y, double& events) {
+  double sum = 0.0, squares = 0.0;
+  for (std::uint64_t k = 0; k < kTracerPaths; ++k) {
+    const reference::SkySample s = tracer.trace(x, y, k);
+    const double l = luminanceOf(s.luminance);
+    sum += l;
+    squares += l * l;
+    events += s.events;
+  }
+  constexpr double n = kTracerPaths;
+  return {sum / n, std::max(squares / n - sum * sum / (n * n), 0.0) * n / (n - 1.0)};
+}
+
+TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
+  const scene::SkyState state = scene::buildSky(scene, scene.atS);
+  const reference::SkyTracer tracer(state, {.seed = seed});
+  const int width = tracer.width(), count = width * tracer.height();
+
+  TracerRow row;
+  std::vector<Pixel> pixels;
+  double events = 0.0;
+  const double begin = processorS();
+  for (int i = 0; i < count; i += kPixelStride) pixels.push_back(trace(tracer, i % width, i / width, events));
+  const double middle = processorS();
+  for (int i = 0; i < count; i += kPixelStride) trace(tracer, i % width, i / width, events);
+  const double seconds = processorS() - middle;
+  row.boundsS = std::max(middle - begin - seconds, 0.0);
+  const double paths = static_cast<double>(pixels.size()) * kTracerPaths;
+  events *= 0.5;
+
+  const auto n = static_cast<double>(pixels.size());
+  double variance = 0.0;
+  for (const Pixel& p : pixels) {
+    row.mean += p.mean / n;
+    variance += p.variance / (n * n * kTracerPaths);
+  }
+  row.error = std::sqrt(variance);
+  for (const Pixel& p : pixels)
+    row.deviation += std::sqrt(p.variance) / std::max(p.mean, kDarkest * row.mean) / n;
+  row.pathsPerS = paths / seconds;
+  row.eventsPerS = events / seconds;
+  constexpr double kPixels = 320.0 * 180.0, kNoise = 0.02;
+  row.hoursTo2Percent =
+      kPixels * (row.deviation * row.deviation) / (kNoise * kNoise) / row.pathsPerS / 3600.0;
+  return row;
+}
+
+}  // namespace
+
+std::vector<TracerRow> measureTracer(const fs::path& folder, std::uint64_t seed) {
+  std::vector<fs::path> scenes;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed))
+    if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
+  if (scenes.empty())
+    throw ParameterError(folder.string() + ": no scenes; expected a folder with scenes X.toml");
+  std::ranges::sort(scenes);
+  std::vector<TracerRow> rows;
+  for (const fs::path& path : scenes) {
+    rows.push_back(measure(scene::readSceneFile(path.string()).scene, seed));
+    rows.back().scene = path.stem().string();
+  }
+  return rows;
+}
+
+}  // namespace welkin::bench
