@@ -93,6 +93,7 @@ void describeRender(CLI::App* app, RenderArgs& a) {
           "; default 1280x720, fisheye 1024x1024, equirect 2048x1024, cubemap 3072x512")
       ->group("Picture");
   add(app, "--technique", a.technique, "NAME", one("technique"))->group("Picture");
+  add(app, "--metaballs-as", a.metaballsAs, "NAME", one("metaballs_as"))->group("Picture");
   add(app, "--quality", a.quality, "NAME", one("output.quality"))->group("Picture");
   add(app, "--exposure", a.exposure, "auto|EV", one("output.exposure_ev"))->group("Picture");
   app->add_flag(

@@ -17,7 +17,7 @@ struct RenderArgs {
   Flag scene, out;
   Flag metar, place, time, at, seed, theme;
   Flag eye, look, projection, size;
-  Flag renderer, technique, quality, spp, noise, resume, droplets, exposure;
+  Flag renderer, technique, metaballsAs, quality, spp, noise, resume, droplets, exposure;
   Flag frames, fps, speed;
   Flag bits, report, threads;
   bool noSunDisc = false;

@@ -223,6 +223,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   }
   if (metaballs) frameCloud(s, a.eye.has_value(), a.look.has_value());
   set(s, "--technique", "technique", a.technique);
+  set(s, "--metaballs-as", "metaballs_as", a.metaballsAs);
   set(s, "--quality", "output.quality", a.quality);
   set(s, "--exposure", "output.exposure_ev", a.exposure);
   if (a.noSunDisc) s.output.sunDisc = false;

@@ -51,7 +51,8 @@ convert "${columns[@]}" +append -colorspace gray -strip -quality 88 "$here/metab
 echo "   metaballs.jpg"
 
 # Skies of them, and one cloud before the sun with and without the droplets' phase function.
-cp "$here/metaball_sky.toml" "$here/metaball_lining.toml" .
+cp "$here"/metaball_{sky,lining,fly}.toml .
+i=0
 picture() { convert "$1" -strip -quality 86 "$here/$2.jpg" && echo "   $2.jpg"; }
 "$program" render metaball_sky.toml --size 960x540 -o noon.png
 picture noon.png metaball_noon
@@ -63,6 +64,15 @@ sed 's/"droplets"/"isotropic"/' metaball_lining.toml > isotropic.toml
 "$program" render isotropic.toml --size 480x360 --exposure 16.5 -o isotropic.png
 convert isotropic.png droplets.png +append lining.png
 picture lining.png metaball_lining
+
+# The same field by three renderers.
+for how in "--metaballs-as splats" "--metaballs-as volume" "--renderer reference --spp 48"; do
+  "$program" render metaball_lining.toml --time 2026-06-21T14:00:00Z --look 284,17,30 --size 240x180 --exposure 15 $how -o "three_$((i++)).png"
+done
+convert three_0.png three_1.png three_2.png +append three.png
+picture three.png metaball_three
+
+"$program" render metaball_fly.toml --size 320x180 --quality low --frames 144 --fps 12 --speed 4 -o "$here/metaball_fly.webm"
 
 # A flight over and through the sky: the eye rises while it turns.
 frames=()

@@ -28,6 +28,10 @@ struct CloudPoint {
   bool inside;       // between base and top of any layer
 };
 
+#ifdef WELKIN_BALLS
+#include "lib/ball_volume.glsl"
+#endif
+
 // First half of the question: the surfaces from the placement alone. Returns a distance within which there is no cloud, or -1 if the
 // 3D noises have to be asked.
 float clearanceInBand(int band, vec3 q, float detail, out CloudSurfaces surfaces) {
@@ -38,6 +42,9 @@ float clearanceInBand(int band, vec3 q, float detail, out CloudSurfaces surfaces
     clearM = min(clearM, cloudClearance(uLayers[i], q, surfaces.s[i], detail)); \
   }
   WELKIN_EACH_LAYER(WELKIN_CLEARANCE)
+#ifdef WELKIN_BALLS
+  if (WELKIN_BALLS(band)) clearM = min(clearM, ballClearance(q));
+#endif
   return clearM;
 }
 
@@ -57,6 +64,9 @@ CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfac
   CloudPoint point = CloudPoint(0.0, 0.0, 1e9, 1e9, false);
 #define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], q, surfaces.s[i], detail, point);
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
+#ifdef WELKIN_BALLS
+  if (WELKIN_BALLS(band)) addBalls(q, point);
+#endif
   return point;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind thin clouds, for any OpenGL camera: the clear sky, the discs, the ground with the shadows of the sheets.
-// WELKIN_VOLUMES: and with those of volumes. WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
+// WELKIN_VOLUMES, WELKIN_SPLATS: and with those of volumes, of metaballs. WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
 
 #include "lib/phase.glsl"
 #include "lib/atmosphere.glsl"
@@ -18,15 +18,27 @@ uniform float uScale;             // written value for each cd/m2
 uniform sampler3D uLightVolume;
 #endif
 
+#ifdef WELKIN_SPLATS
+#include "lib/splat_layer.glsl"
+#endif
+
 layout(location = 0) out vec4 outColor;
 
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
-float groundSunlight(vec2 q) { return exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0))) * sheetsSunlight(vec3(q, 0.0)); }
-#else
-float groundSunlight(vec2 q) { return sheetsSunlight(vec3(q, 0.0)); }
 #endif
+
+float groundSunlight(vec2 q) {
+  float sun = sheetsSunlight(vec3(q, 0.0));
+#ifdef WELKIN_VOLUMES
+  sun *= exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0)));
+#endif
+#ifdef WELKIN_SPLATS
+  sun *= splatSunlight(vec3(q, 0.0));
+#endif
+  return sun;
+}
 
 #include "lib/background.glsl"
 

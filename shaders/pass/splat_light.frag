@@ -25,6 +25,7 @@ layout(location = 0) out vec4 outLight;
 
 const float kRim = 0.95;                  // rays beyond that many radii see what those see
 const int kHalvings = 6;
+const float kEyeStackPart = 0.4;          // of the number of the phase function: how much the stack from the eye counts
 const float kFront = 0.7;                 // optical depth of the surface of a cloud
 
 void main() {
@@ -51,7 +52,7 @@ void main() {
     // Balls that run into one another have one surface: where other balls hide that place, what is seen is in front of it.
     vec3 away = normalize(vec3(vCloud)), across = normalize(cross(away, abs(away.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     SplatStack eyeStack = SplatStack(vec3(vCloud), across, cross(across, away), away, vCloud.w, vBlock.w, block + 2.0 * beside);
-    distanceM = min(distanceM, splatReach(eyeStack, uDepths, dir, kFront));
+    distanceM = mix(distanceM, min(distanceM, splatReach(eyeStack, uDepths, dir, kFront)), fract(vMatter.y) / kEyeStackPart);
   }
   vec3 p = dir * distanceM;
 

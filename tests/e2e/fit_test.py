@@ -110,6 +110,9 @@ class Fit(ProgramTest):
         self.assertGreater(len(balls), 50)
         self.assertAlmostEqual(field_at(balls, (0, 0, 300)), 0.5, delta=0.25)
         self.assertLess(field_at(balls, (0, 0, -80)), 0.02)
+        for how in ("splats", "volume"):
+            self.succeed("render", "x.json", "--size", "32x18", "--quality", "low", "--metaballs-as", how, "-o", how + ".png")
+        self.fail_with(2, "--metaballs-as", "render", "x.json", "--metaballs-as", "balls", "-o", "y.png")
         self.fail_with(2, "metaballs are grown by --cumulus", "cloud", "-o", "y.json")
         self.fail_with(2, "neither voxels nor noise", "cloud", "--cumulus", "--octaves", "3", "-o", "y.json")
         self.fail_with(2, "are for volumes", "cloud", "--cumulus", "--preview", "p.png", "-o", "y.json")

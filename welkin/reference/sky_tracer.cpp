@@ -14,6 +14,7 @@
 #include "welkin/optics/phase.h"
 #include "welkin/reference/cloud_medium.h"
 #include "welkin/reference/directions.h"
+#include "welkin/reference/metaball_medium.h"
 #include "welkin/reference/phase_sampler.h"
 #include "welkin/reference/sky_lights.h"
 #include "welkin/scene/cloud_shapes.h"
@@ -66,19 +67,23 @@ std::vector<int> tracedLayers(const scene::SkyState& state) {
     throw ParameterError(who + "[[sheet]]s; expected a scene of volumes, or the renderer gpu");
   if (!state.scene.skyBox.empty())
     throw ParameterError(who + "a [sky_box]; expected a scene without one, or the renderer gpu");
-  if (!state.scene.metaballs.empty())
-    throw ParameterError(who + "[[metaballs]]; expected a scene without them, or the renderer gpu");
   std::vector<int> layers;
   for (std::size_t i = 0; i < state.weather.layers.size(); ++i) {
     if (scene::isSheet(state.scene, state.weather.layers[i]))
       throw ParameterError(who + "layers drawn as thin sheets (layer " + std::to_string(i + 1) +
                            "); expected the technique volume, or the renderer gpu");
-    if (scene::isMetaballs(state.scene, state.weather.layers[i]))
-      throw ParameterError(who + "layers made of metaballs (layer " + std::to_string(i + 1) +
-                           "); expected the technique volume, or the renderer gpu");
-    layers.push_back(static_cast<int>(i));
+    if (!scene::isMetaballs(state.scene, state.weather.layers[i])) layers.push_back(static_cast<int>(i));
   }
   return layers;
+}
+
+// With all their detail at any distance.
+MetaballMedium tracedMetaballs(const scene::SkyState& state) {
+  scene::CloudBalls balls;
+  if (state.metaballs)
+    state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
+                        balls, scene::MetaballDetail::kFinest);
+  return MetaballMedium(balls);
 }
 
 std::vector<bool> iceOf(const scene::SkyState& state) {
@@ -97,10 +102,14 @@ struct SkyTracer::Impl {
         projector(scene::projectorOf(s)),
         earth(s.clouds->earthRadiusM()),
         clouds(*s.clouds, tracedLayers(s), iceOf(s)),
+        balls(tracedMetaballs(s)),
         air(s.atmosphere->uniforms()),
         lights(s, air, earth),
         droplets(dropletPhase(s, settings.droplets)),
         ice(PhaseSampler::tabulated(icePhase)),
+        molecules(
+            PhaseSampler::tabulated([](double c) { return optics::phaseRayleigh(static_cast<float>(c)); })),
+        isotropic(PhaseSampler::henyeyGreenstein(0.0)),
         peak(droplets.above(kPeakAbove)),
         airglow(s.atmosphere->uniforms().airglow),
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM) {}
@@ -110,9 +119,10 @@ struct SkyTracer::Impl {
   scene::Projector projector;
   Sphere earth;
   CloudMedium clouds;
+  MetaballMedium balls;
   Air air;
   SkyLights lights;
-  PhaseSampler droplets, ice;
+  PhaseSampler droplets, ice, molecules, isotropic;
   PhaseSampler peak;  // of the droplets, by itself; its integral is its share of all they scatter
   glm::dvec3 airglow;
   double airglowHeight;
@@ -152,10 +162,34 @@ struct SkyTracer::Impl {
     return airglow / std::sqrt(std::max(1.0 - q * q * (1.0 - mu * mu), 1e-4));
   }
 
+  // In a cloud, of layers or of metaballs.
+  struct Collision {
+    double t = 0.0;  // along the ray
+    const PhaseSampler* phase = nullptr;
+    double albedo = 1.0;
+  };
+  // The first before the ray leaves the air or meets the ground.
+  std::optional<Collision> collide(const Ray& ray, Random& random) const {
+    std::optional<Collision> collision;
+    if (const auto c = clouds.collide(ray, CloudMedium::kToGround, random))
+      collision = {c->t, c->ice ? &ice : &droplets, 1.0};
+    if (balls.empty()) return collision;
+    if (const auto b = balls.collide(ray, collision ? collision->t : end(ray), random))
+      collision = {b->t, &phaseOf(b->phase), b->albedo};
+    return collision;
+  }
+  const PhaseSampler& phaseOf(scene::MetaballPhase phase) const {
+    return phase == scene::MetaballPhase::kDroplets   ? droplets
+           : phase == scene::MetaballPhase::kRayleigh ? molecules
+                                                      : isotropic;
+  }
+
   // Adds the light that comes to p through clouds and air, times a share of it.
   void addLight(Work& work, const glm::dvec3& p, const LightSample& light, const glm::dvec3& share) const {
     if (lights.isBelow(light, p)) return;
-    const double through = clouds.transmittance({p, light.direction}, CloudMedium::kToGround, work.random);
+    const Ray ray{p, light.direction};
+    double through = clouds.transmittance(ray, CloudMedium::kToGround, work.random);
+    if (through > 0.0 && !balls.empty()) through *= balls.transmittance(ray, end(ray), work.random);
     if (through > 0.0) work.sample.luminance += share * through * lights.illuminance(light, p);
   }
 
@@ -169,7 +203,7 @@ struct SkyTracer::Impl {
                      Value&& value, Work& work) const;
 
   void scatterInAir(Path& path, const glm::dvec3& p, const Air::Medium& m, Work& work) const;
-  void scatterInCloud(Path& path, const glm::dvec3& p, bool isIce, Work& work) const;
+  void scatterInCloud(Path& path, const Collision& collision, Work& work) const;
   bool reflect(Path& path, const glm::dvec3& p, Work& work) const;
   void airEvent(Path& path, double t, const glm::dvec3& weights, double chance, Work& work) const;
 };
@@ -200,7 +234,8 @@ void SkyTracer::Impl::gather(const Path& path, const glm::dvec3& p, double chain
   if (light.disc < 0) return;
   const glm::dvec3 lit = path.throughput * value(light.direction);
   if (sum(lit) != 0.0) addLight(work, p, light, lit);
-  if (clouds.grid() && unit(work.random) < chain) gatherByPeaks(path, p, light, chain, value, work);
+  if ((clouds.grid() || !balls.empty()) && unit(work.random) < chain)
+    gatherByPeaks(path, p, light, chain, value, work);
 }
 
 template <class Value>
@@ -222,9 +257,9 @@ void SkyTracer::Impl::gatherByPeaks(const Path& path, const glm::dvec3& p, const
   glm::dvec3 at = p;
   while (n > 0) {
     const Ray ray{at, ways[--n]};
-    const auto collision = clouds.collide(ray, CloudMedium::kToGround, random);
-    if (!collision || collision->ice) return;  // ice has no peak
-    lit *= throughAir(ray, collision->t);
+    const auto collision = collide(ray, random);
+    if (!collision || collision->phase != &droplets) return;  // no others have that peak
+    lit *= collision->albedo * throughAir(ray, collision->t);
     at = ray.at(collision->t);
   }
   addLight(work, at, light, lit);
@@ -250,13 +285,15 @@ void SkyTracer::Impl::scatterInAir(Path& path, const glm::dvec3& p, const Air::M
   path.ray = {p, turned(from, c, 2.0 * kPi * unit(random))};
 }
 
-void SkyTracer::Impl::scatterInCloud(Path& path, const glm::dvec3& p, bool isIce, Work& work) const {
+void SkyTracer::Impl::scatterInCloud(Path& path, const Collision& collision, Work& work) const {
   Random& random = work.random;
-  const PhaseSampler& phase = isIce ? ice : droplets;
+  const glm::dvec3 p = path.ray.at(collision.t);
+  const PhaseSampler& phase = *collision.phase;
+  path.throughput *= collision.albedo;
   ++work.sample.events;
   const glm::dvec3 from = path.ray.way;
   // The first event of all has none before it that would find its peak.
-  const bool whole = isIce || path.first;
+  const bool whole = &phase != &droplets || path.first;
   gather(
       path, p, peak.integral(),
       [&](const glm::dvec3& w) {
@@ -293,7 +330,7 @@ void SkyTracer::Impl::follow(Path path, Work& work) const {
       if (unit(random) * kRouletteTo >= most) return;
       path.throughput *= kRouletteTo / most;
     }
-    const auto collision = clouds.collide(path.ray, CloudMedium::kToGround, random);
+    const auto collision = collide(path.ray, random);
     const double t = collision ? collision->t : end(path.ray);
     if (!air.empty()) {
       // One event of the two, each with the chance of its share of the light.
@@ -307,7 +344,7 @@ void SkyTracer::Impl::follow(Path path, Work& work) const {
       path.throughput *= through / (1.0 - chance);
     }
     if (collision) {
-      scatterInCloud(path, path.ray.at(t), collision->ice, work);
+      scatterInCloud(path, *collision, work);
     } else if (meetsGround(path.ray)) {
       if (!reflect(path, path.ray.at(t), work)) return;
     } else {
@@ -330,7 +367,7 @@ SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOf
   if (near > 0.0) ray.from = ray.at(near);
 
   // The first piece is followed twice: to a scattering in the air, and to what is behind it.
-  const auto collision = clouds.collide(ray, CloudMedium::kToGround, work.random);
+  const auto collision = collide(ray, work.random);
   work.sample.cloud = collision.has_value();
   const double t = collision ? collision->t : end(ray);
   glm::dvec3 through(1.0);
@@ -348,7 +385,7 @@ SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOf
   Path path{ray, through, true};
   bool on = true;
   if (collision) {
-    scatterInCloud(path, ray.at(t), collision->ice, work);
+    scatterInCloud(path, *collision, work);
   } else if (meetsGround(ray)) {
     on = reflect(path, ray.at(t), work);
   } else {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through a sky by Monte Carlo, without bias: the picture that fast renderers approximate. Clouds, air,
-// ground, sun and moon are those of a SkyState; all orders of scattering are traced, in clouds with their
-// full detail at any distance. docs/theory.md has the method and its sources.
+// Light through a sky by Monte Carlo, without bias: the picture that fast renderers approximate. Clouds,
+// those of metaballs too, air, ground, sun and moon are those of a SkyState; all orders of scattering are
+// traced, in clouds with their full detail at any distance. docs/theory.md has the method and its sources.
 //
-// What is not traced: thin sheets, metaballs and pictures in the place of the sky, which are refused, and the
-// lens.
+// What is not traced: thin sheets and pictures in the place of the sky, which are refused, and the lens.
+// Metaballs scatter by their phase function every time, not the first time alone.
 // Beyond 1000 km from the eye there is no cloud. The moon's disc lights as an even one does.
 #pragma once
 

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/live_splats.h"
 #include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
 #include "welkin/render/programs.h"
@@ -31,21 +32,28 @@ constexpr std::size_t kMaxShadows = 4;  // of lib/sheet_shadows.glsl
 constexpr std::array<const char*, kMaxShadows> kShadowPatterns = {"uShadowPattern0", "uShadowPattern1",
                                                                   "uShadowPattern2", "uShadowPattern3"};
 
-// volumes: with their shadows on the ground.
-gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox, bool volumes) {
+// What else than sheets is in a sky, with its shadow on the ground: of backdrops there is one of each kind.
+struct Others {
+  bool volumes = false, splats = false;
+  std::size_t number() const { return (volumes ? 1u : 0u) + (splats ? 2u : 0u); }
+  static constexpr std::size_t kNumbers = 4;
+};
+
+gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox, const Others& others) {
   shading::ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", ""},
                                  {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}};
   if (overSkyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
-  if (volumes) defines.emplace_back("WELKIN_VOLUMES", "1");
+  if (others.volumes) defines.emplace_back("WELKIN_VOLUMES", "1");
+  if (others.splats) defines.emplace_back("WELKIN_SPLATS", "1");
   return fullscreenProgram("pass/backdrop.frag", defines);
 }
 
 using Backdrops = std::array<gpu::Program, 3>;
-Backdrops backdropPrograms(bool volumes) {
+Backdrops backdropPrograms(const Others& others) {
   using shading::BackdropKind;
-  return {backdropProgram(BackdropKind::kAll, false, volumes),
-          backdropProgram(BackdropKind::kSky, false, volumes),
-          backdropProgram(BackdropKind::kGround, false, volumes)};
+  return {backdropProgram(BackdropKind::kAll, false, others),
+          backdropProgram(BackdropKind::kSky, false, others),
+          backdropProgram(BackdropKind::kGround, false, others)};
 }
 
 }  // namespace
@@ -54,9 +62,9 @@ struct LiveSky::Impl {
   SheetPass sheetPass;
   FlarePass flarePass;
   OctavesPass octavesPass;
-  Backdrops thinBackdrops = backdropPrograms(false);
-  Backdrops volumeBackdrops;                 // once there are volumes
-  std::array<gpu::Program, 2> boxBackdrops;  // once there is a box: in the place of all of them
+  // By what else is in the sky, once it is; and once there is a box, in the place of all of them.
+  std::array<Backdrops, Others::kNumbers> allBackdrops{backdropPrograms({})};
+  std::array<gpu::Program, Others::kNumbers> boxBackdrops;
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
@@ -66,7 +74,8 @@ struct LiveSky::Impl {
   std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
   std::optional<LiveVolumes> volumes;   // once there are any
-  bool marched = false;                 // the state has volumes
+  std::optional<LiveSplats> splats;     // the same
+  Others others;                        // what the state has
   std::vector<shading::VolumeInSky> volumesInSky;
 
   // Kept for their memory.
@@ -74,16 +83,20 @@ struct LiveSky::Impl {
   shading::LightUnderSheets underSheets;
   shading::Uniforms skyUniforms;
 
-  Backdrops& backdrops() { return marched ? volumeBackdrops : thinBackdrops; }
-  gpu::Program& boxBackdrop() { return boxBackdrops[marched ? 1 : 0]; }
+  Backdrops& backdrops() { return allBackdrops[others.number()]; }
+  gpu::Program& boxBackdrop() { return boxBackdrops[others.number()]; }
   void change(const scene::SkyState& next);
   void refresh();
-  void updateBox(const scene::SkyBox& wanted, bool withVolumes);
+  void updateBox(const scene::SkyBox& wanted, const Others& with);
   void updateAmbient();
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
+  void drawSheets(const shading::View& view, const shading::ViewParts& parts, const gpu::Target& target,
+                  const LiveOptions& options);
+  void drawSplats(const shading::View& view, const shading::ViewParts& parts, const gpu::Target& target,
+                  const LiveOptions& options);
   void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   shading::SheetLook look(const ThinLayer& sheet, const shading::ViewParts& view) const {
     return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
@@ -123,16 +136,15 @@ void LiveSky::update(const scene::SkyState& state) {
 
 void LiveSky::Impl::change(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
-  if (!next.scene.metaballs.empty() ||
-      std::ranges::any_of(next.weather.layers,
-                          [&](const weather::Layer& layer) { return scene::isMetaballs(next.scene, layer); }))
-    throw ParameterError("a live sky draws no metaballs; expected another technique, and no [[metaballs]]");
-  const bool volumesThere = std::ranges::any_of(
-      next.weather.layers, [&](const weather::Layer& layer) { return !scene::isSheet(next.scene, layer); });
-  if (!same) updateBox(next.scene.skyBox, volumesThere);  // first, as its files may be missing
+  Others there;
+  there.volumes = std::ranges::any_of(next.weather.layers, [&](const weather::Layer& layer) {
+    return !scene::isSheet(next.scene, layer) && !scene::isMetaballs(next.scene, layer);
+  });
+  there.splats = LiveSplats::in(next);
+  if (!same) updateBox(next.scene.skyBox, there);  // first, as its files may be missing
   state = next;
   if (same) return;
-  marched = volumesThere;
+  others = there;
   volumesInSky.clear();
   sheets.clear();
   sheets = makeThinLayers(state->scene, state->weather, state->clouds->earthRadiusM());
@@ -140,13 +152,17 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
     if (sheet.living) octavesPass.prepare(*sheet.living);
   if (!clouds || clouds->noise() != state->clouds->sharedNoise())
     clouds.emplace(state->clouds->sharedNoise());
-  if (!marched) return;
-  if (volumeBackdrops[0].id() == 0) volumeBackdrops = backdropPrograms(true);
+  if (backdrops()[0].id() == 0) backdrops() = backdropPrograms(others);
+  if (others.splats) {
+    if (!splats) splats.emplace();
+    splats->change(*state);
+  }
+  if (!others.volumes) return;
   volumesInSky = shading::volumesIn(*state);
   if (!volumes) volumes.emplace();
   volumes->change(*state, sheets);
   const shading::Uniforms light = volumes->lightUniforms();
-  for (gpu::Program& p : volumeBackdrops) setUniforms(p, light);
+  for (gpu::Program& p : backdrops()) setUniforms(p, light);
   if (box) setUniforms(boxBackdrop(), light);
 }
 
@@ -162,21 +178,22 @@ void LiveSky::Impl::refresh() {
   sheetPass.setSky(skyUniforms);
   for (gpu::Program& p : backdrops()) setUniforms(p, skyUniforms);
   if (box) setUniforms(boxBackdrop(), skyUniforms);
-  if (marched) volumes->update(skyUniforms);
+  if (others.volumes) volumes->update(skyUniforms);
+  if (others.splats) splats->update(*state, skyUniforms);
 }
 
-void LiveSky::Impl::updateBox(const scene::SkyBox& wanted, bool withVolumes) {
+void LiveSky::Impl::updateBox(const scene::SkyBox& wanted, const Others& with) {
   if (!box || box->box() != wanted) {
     box.reset();
     if (!wanted.empty()) box.emplace(wanted);
   }
-  gpu::Program& p = boxBackdrops[withVolumes ? 1 : 0];
-  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, true, withVolumes);
+  gpu::Program& p = boxBackdrops[with.number()];
+  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, true, with);
 }
 
-// The state's ambient light knows of its volumes; here are sheets beside them.
+// The state's ambient light knows of its volumes and metaballs; here are sheets beside them.
 void LiveSky::Impl::updateAmbient() {
-  if (marched && sheets.empty()) return;
+  if ((others.volumes || others.splats) && sheets.empty()) return;
   inSky.clear();
   for (const ThinLayer& sheet : sheets) inSky.push_back({sheet.sheet.heightM, &sheet.matter});
   shading::lightUnder(*state, inSky, volumesInSky, underSheets);
@@ -225,18 +242,19 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   tables.bind(p);
   clouds->bind(p);
   std::size_t shadows = 0;
-  float others = 1.0f;
+  float mean = 1.0f;
   for (const ThinLayer& sheet : sheets) {
     if (shadows == kMaxShadows || scene::comesDown(sheet.sheet.surface)) {
-      others *= sheet.sunThrough;
+      mean *= sheet.sunThrough;
       continue;
     }
     setSheet(p, shadowNames[shadows], look(sheet, view));
     p.bind(kShadowPatterns[shadows], sheet.flat);
     ++shadows;
   }
-  if (marched) volumes->setLight(p, *state, view);
-  p.set("uShadowMean", others);
+  if (others.volumes) volumes->setLight(p, *state, view);
+  if (others.splats) splats->setShadow(p);
+  p.set("uShadowMean", mean);
   p.set("uShadowCount", static_cast<int>(shadows));
 }
 
@@ -262,24 +280,55 @@ void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target&
                  options.depth, target, options.scale);
 }
 
+void LiveSky::Impl::drawSplats(const shading::View& view, const shading::ViewParts& parts,
+                               const gpu::Target& target, const LiveOptions& options) {
+  splats->draw(parts, tables, {target, options.scale, false, options.depth, view.projection});
+}
+
+// Far to near: down to the eye from above, and up to it from below; metaballs among them by the middle of
+// their heights.
+void LiveSky::Impl::drawSheets(const shading::View& view, const shading::ViewParts& parts,
+                               const gpu::Target& target, const LiveOptions& options) {
+  const double eyeM = parts.eyeM.z;
+  bool left = others.splats;
+  const auto splatsIf = [&](bool now) {
+    if (left && now) drawSplats(view, parts, target, options);
+    left &= !now;
+  };
+  const auto nearest =
+      std::find_if(sheets.begin(), sheets.end(), [&](const ThinLayer& s) { return s.sheet.heightM > eyeM; });
+  for (auto s = sheets.end(); s != nearest;) {
+    --s;
+    splatsIf(left && splats->heightM() > s->sheet.heightM);
+    drawSheet(*s, parts, target, options.scale);
+  }
+  splatsIf(left && splats->heightM() > eyeM);
+  for (auto s = sheets.begin(); s != nearest; ++s) {
+    splatsIf(left && splats->heightM() < s->sheet.heightM);
+    drawSheet(*s, parts, target, options.scale);
+  }
+  splatsIf(left);
+}
+
 void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
   Impl& m = *impl_;
   const gpu::StateGuard guard;
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);
-  if (m.marched)
+  if (m.others.splats) m.splats->lookFrom(*m.state, parts.eyeM);
+  if (m.others.volumes)
     m.volumes->march(options.view, *m.state, m.sheets, *m.clouds, m.tables, parts, target.area.width,
                      target.area.height);
   if (options.backdrop) m.drawBackdrop(parts, target, options.scale);
-  if (m.marched) {
+  if (m.others.volumes) {
+    // Whichever is nearer by the middle of its heights comes last.
+    const auto away = [&](double heightM) { return std::abs(heightM - parts.eyeM.z); };
+    const bool before = m.others.splats && away(m.splats->heightM()) > away(m.volumes->heightM());
+    if (before) m.drawSplats(view, parts, target, options);
     m.volumes->show(options.view, target, options.scale);
-    if (options.flare > 0.0f) m.drawFlare(parts, target, options);
-    return;
+    if (m.others.splats && !before) m.drawSplats(view, parts, target, options);
+  } else {
+    m.drawSheets(view, parts, target, options);
   }
-  // Far to near: down to the eye from above, and up to it from below.
-  const auto nearest = std::find_if(m.sheets.begin(), m.sheets.end(),
-                                    [&](const ThinLayer& s) { return s.sheet.heightM > parts.eyeM.z; });
-  for (auto s = m.sheets.end(); s != nearest;) m.drawSheet(*--s, parts, target, options.scale);
-  for (auto s = m.sheets.begin(); s != nearest; ++s) m.drawSheet(*s, parts, target, options.scale);
   if (options.flare > 0.0f) m.drawFlare(parts, target, options);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sky inside somebody's frame loop, thin sheets and marched volumes:
+// A sky inside somebody's frame loop, thin sheets, marched volumes and clouds of metaballs:
 //
 //   LiveSky sky;                                    // with the engine's context current
 //   every frame:  sky.update(scene, seconds);
@@ -9,8 +9,13 @@
 // drawn depends on the scene, the seconds and the view alone, never on what was drawn before; with volumes,
 // it comes to that within some frames (render/live_volumes.h). The engine's OpenGL state is as it was after
 // every call. After the first two updates of a scene and a draw nothing is compiled, no OpenGL object is made
-// and no memory is allocated, and while time runs on no update takes much longer than others. Belongs to the
-// context that was current when it was made; not thread-safe.
+// and no memory is allocated, and while time runs on no update takes much longer than others; but a view with
+// many more metaballs in it than any before makes room for them.
+//
+// Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
+// sheets and volumes all of them together have their place by the middle of their heights.
+//
+// Belongs to the context that was current when it was made; not thread-safe.
 #pragma once
 
 #include <memory>
@@ -27,7 +32,7 @@ struct LiveOptions {
   float scale = 1.0f;    // written for each cd/m2: 1 into float targets, an exposure into others
   bool backdrop = true;  // clear sky, discs of sun and moon, ground; else only the clouds, over what is there
   float flare = 0.0f;    // share of the sun's light that a lens scatters into a glow and ghosts; 0: none
-  EngineDepth depth{};   // of what hides the sun from the flare
+  EngineDepth depth{};   // of what hides the sun from the flare, and metaballs
   unsigned view = 0;     // number of the view, where several are drawn in a frame: volumes remember each
 };
 
@@ -40,7 +45,7 @@ class LiveSky {
   LiveSky& operator=(const LiveSky&) = delete;
 
   // The sky `secondsAfter` the scene's time. Its layers are drawn as their techniques say (auto: as
-  // volumes). Throws as buildSky does, and ParameterError for metaballs, which it does not draw.
+  // volumes). Throws as buildSky does.
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);

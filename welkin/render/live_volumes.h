@@ -52,6 +52,13 @@ class LiveVolumes {
   // Draws it over the target. After march() of the same view.
   void show(std::size_t view, const gpu::Target& target, float scale);
 
+  // The middle of their heights.
+  double heightM() const {
+    return layout_.bands.empty()
+               ? 0.0
+               : 0.5 * static_cast<double>(layout_.bands.front().baseM + layout_.bands.back().topM);
+  }
+
   // For programs that want the shadows of the volumes: the uniforms of lib/light_volume.glsl, and those that
   // change with the view, with the texture.
   shading::Uniforms lightUniforms() const { return shading::lightVolumeUniforms(layout_); }

@@ -21,6 +21,7 @@
 #include "welkin/render/sky_sheets.h"
 #include "welkin/render/sky_splats.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/shading/ball_volume.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
@@ -65,6 +66,7 @@ struct SkyRenderer::Impl {
   std::optional<CloudTextures> clouds;
   SkySheets sheets;
   SkySplats splats;
+  shading::BallVolume balls;         // metaballs in the place of splats
   std::optional<SkyBoxTexture> box;  // in the place of the clear sky
   std::optional<FlarePass> flare;
   gpu::Texture2D sum;  // of sub-frames
@@ -101,6 +103,9 @@ Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress
   impl_->context.makeCurrent();
   impl_->updateBox(state.scene.skyBox);
   impl_->sheets.update(state);
+  impl_->balls = {};
+  if (state.scene.metaballsAs == scene::MetaballRender::kVolume)
+    impl_->balls = shading::ballVolume(state.metaballs->instancesAt(state.secondsAfter, glm::dvec2(0.0)));
   impl_->splats.update(state);
   if (impl_->sheets.empty()) return impl_->draw(state, progress);
   scene::SkyState under = state;
@@ -153,10 +158,13 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
             height = static_cast<int>(state.scene.output.height);
 
   if (!clouds || clouds->noise() != state.clouds->sharedNoise()) clouds.emplace(state.clouds->sharedNoise());
+  clouds->setBalls(balls);
   tables.update(state);
   done("tables");
 
-  const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state);
+  std::optional<glm::vec2> ballsM;
+  if (!balls.empty()) ballsM = glm::vec2(std::max(balls.lowM, 0.0f), balls.highM);
+  const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state, ballsM);
   lightVolume.draw(state, layout, *clouds);
   done("light volume");
 

@@ -63,13 +63,20 @@ int facePx(const scene::SkyState& state) {
 
 void splatClouds(const scene::CloudBalls& balls, std::vector<SplatCloud>& out) {
   out.clear();
-  for (std::size_t i = 0; i < balls.clouds.size(); ++i)
-    out.push_back({balls.ballsOf(i), balls.clouds[i].phase, balls.clouds[i].albedo});
+  for (std::size_t i = 0; i < balls.clouds.size(); ++i) {
+    const scene::CloudBalls::Cloud& cloud = balls.clouds[i];
+    const std::span<const field::Metaball> own = balls.ballsOf(i);
+    out.push_back(
+        {own, cloud.phase, cloud.albedo, own.size() - (cloud.end - cloud.coarseEnd), cloud.coarseShare});
+  }
 }
 
 void SkySplats::update(const scene::SkyState& state) {
-  state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
-                      balls_);
+  balls_.balls.clear();
+  balls_.clouds.clear();
+  if (state.scene.metaballsAs == scene::MetaballRender::kSplats)
+    state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
+                        balls_);
   splatClouds(balls_, clouds_);
 }
 

@@ -19,7 +19,7 @@ void splatClouds(const scene::CloudBalls& balls, std::vector<SplatCloud>& out);
 
 class SkySplats {
  public:
-  // Those of a sky; may be none.
+  // Those of a sky that are drawn as splats; may be none.
   void update(const scene::SkyState& state);
   bool empty() const { return clouds_.empty(); }
 

@@ -2,7 +2,9 @@
 #include "welkin/render/splat_pass.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <numeric>
@@ -13,26 +15,36 @@
 namespace welkin::render {
 namespace {
 
-// As lib/splat_stack.glsl has them: finer stacks for clouds that are larger in view.
-struct StackClass {
-  int sidePx, slices, columns;
-  float leastShare;  // radius over distance
-  std::size_t most;  // clouds
-  int width() const { return sidePx * columns; }
-  int height() const { return sidePx * slices / columns; }
+// What a stack takes of the texture, as lib/splat_stack.glsl has it.
+struct StackSize {
+  int sidePx = 0;
+  int slices() const { return sidePx / 2; }
+  int columns() const { return sidePx > 32 ? 8 : 4; }
+  int width() const { return sidePx * columns(); }
+  int height() const { return sidePx * ((slices() + columns() - 1) / columns()); }
 };
-constexpr std::array<StackClass, 4> kClasses = {{{128, 64, 8, 0.05f, 8},
-                                                 {64, 32, 8, 0.12f, 8},
-                                                 {32, 16, 4, 0.03f, 64},
-                                                 {16, 8, 4, 0.0f, std::numeric_limits<std::size_t>::max()}}};
+// Stacks are the finer the larger a cloud is in view, without steps: the size that a stack takes of the
+// texture has steps, but of it as much is used as makes texels and slices so fine as they are to be.
+struct Fineness {
+  double mostPx, mostShare;  // texels on a slice's side, of a cloud with that share: radius over distance
+  double cubes;              // sides cubed, of all clouds around the eye, before all of them get coarser
+};
+constexpr double kLeastPx = 12.0;
+constexpr int kStepPx = 4;
+constexpr Fineness kLiveFineness{64.0, 0.12, 2e6}, kStillFineness{128.0, 0.05, 12e6};
 constexpr int kStacks = 3;  // to the light, to the zenith, from the eye
-constexpr int kFinestLive = 1;
-// Nearer than that, in radii of a cloud, there is none from the eye.
-constexpr double kEyeStackFrom = 1.15;
+// Nearer than the one, in radii of a cloud, there is none from the eye; from the other on it counts in full.
+constexpr double kEyeStackFrom = 1.15, kEyeStackAll = 1.6, kEyeStackPart = 0.4;  // as pass/splat_light.frag
+
+// How far clouds shade others: fading out over the last third of it.
+constexpr double kShadeReachM = 12000.0;
 
 constexpr int kTilePx = 4, kFineTilePx = 16, kTilesInRow = 256;
 constexpr double kMostFineTexels = 2e6;  // of all tiles together
 constexpr int kShadowPx = 1024;
+
+// Floats of a ball in all slices of its three stacks and of those that it shades; few balls need more.
+constexpr std::size_t kValuesInBall = 160;
 
 // A sort that has moved so many places for each ball had better begin anew.
 constexpr std::size_t kMostMoves = 24;
@@ -47,6 +59,17 @@ bool drawn(const field::Metaball& b) {
   return b.density != 0.0 && b.radiusM > 0.0;
 }
 
+// What `add` finds of a cloud's balls: of the two levels that fade into one another, each by itself, as `mix`
+// puts them together; nothing where there are no balls.
+template <class T, class Add, class Mix>
+std::optional<T> mixed(const SplatCloud& cloud, Add&& add, Mix&& mix) {
+  std::array<std::optional<T>, 2> found;
+  for (std::size_t i = 0; i < cloud.balls.size(); ++i)
+    if (drawn(cloud.balls[i])) add(cloud.balls[i], found[i < cloud.coarse ? 0 : 1]);
+  if (!found[0] || !found[1]) return found[0] ? found[0] : found[1];
+  return mix(*found[1], *found[0], static_cast<double>(cloud.coarseShare));
+}
+
 // Across, upward and away from the light.
 glm::dmat3 axesOf(const glm::dvec3& toLight) {
   const glm::dvec3 away = -glm::normalize(toLight);
@@ -55,11 +78,12 @@ glm::dmat3 axesOf(const glm::dvec3& toLight) {
   return {across, glm::cross(across, away), away};
 }
 
-// Grows, never shrinks, so that it settles.
+// Grows, never shrinks, so that it settles; to powers of two, so that whatever was drawn before coordinates
+// come to the same.
 void atLeast(gpu::Texture2D& texture, std::optional<gpu::Framebuffer>& framebuffer, int width, int height,
              gpu::Format format) {
   if (texture.width() >= width && texture.height() >= height) return;
-  const int tall = std::max(height, texture.height() + texture.height() / 2);
+  const int tall = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(height, texture.height()))));
   framebuffer.reset();
   texture = gpu::Texture2D(width, tall, {.format = format});
   framebuffer.emplace(texture);
@@ -94,9 +118,11 @@ bool mayBeSeen(const ViewCone& cone, const glm::dvec3& centreM, double radiusM) 
 
 struct SplatPass::Block {
   std::uint32_t cloud = 0;
-  glm::dvec3 centreM{0.0};  // from the eye
-  float share = 0.0f;       // radius over distance
-  int stackClass = 0, x = 0, y = 0;
+  glm::dvec3 centreM{0.0};   // from the eye
+  float share = 0.0f;        // radius over distance
+  double finePx = kLeastPx;  // used of a slice's side
+  StackSize size;
+  int x = 0, y = 0;
   std::array<float, 2 * kStacks> halves{};  // half side and half depth of each stack
 };
 
@@ -115,6 +141,16 @@ SplatPass::SplatPass(SplatDetail detail)
 
 SplatPass::~SplatPass() = default;
 
+void SplatPass::reserve(std::size_t clouds, std::size_t balls) {
+  blocks_.reserve(clouds);
+  wholes_.reserve(clouds);
+  bySize_.reserve(clouds);
+  pieces_.reserve(balls);
+  order_.reserve(balls);
+  distances_.reserve(balls);
+  values_.reserve(kValuesInBall * balls);
+}
+
 void SplatPass::setSky(const shading::Uniforms& sky, const glm::vec3& toLight) {
   setUniforms(light_, sky);
   toLight_ = toLight;
@@ -124,50 +160,60 @@ void SplatPass::setSky(const shading::Uniforms& sky, const glm::vec3& toLight) {
 void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view) {
   const ViewCone cone = coneOf(view);
   blocks_.clear();
+  wholes_.clear();
   bySize_.clear();
+  const Fineness& fineness = detail_ == SplatDetail::kStill ? kStillFineness : kLiveFineness;
+  const auto finePx = [&](double share) { return fineness.mostPx * std::sqrt(share / fineness.mostShare); };
+  const auto cube = [&](double px) { return std::pow(std::clamp(px, kLeastPx, fineness.mostPx), 3.0); };
+  double cubes = 0.0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
-    glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
-    for (const field::Metaball& b : clouds[i].balls) {
-      if (!drawn(b)) continue;
-      low = glm::min(low, b.centreM - b.radiusM);
-      high = glm::max(high, b.centreM + b.radiusM);
+    const std::optional<field::Box> box = mixed<field::Box>(
+        clouds[i],
+        [](const field::Metaball& b, std::optional<field::Box>& all) {
+          const field::Box own{b.centreM - b.radiusM, b.centreM + b.radiusM};
+          all = all ? field::Box{glm::min(all->low, own.low), glm::max(all->high, own.high)} : own;
+        },
+        [](const field::Box& fine, const field::Box& coarse, double share) {
+          return field::Box{glm::mix(fine.low, coarse.low, share), glm::mix(fine.high, coarse.high, share)};
+        });
+    if (!box) {
+      wholes_.push_back({glm::dvec3(0.0), 0.0});
+      continue;
     }
-    if (!(low.x < high.x)) continue;
-    const glm::dvec3 centreM = 0.5 * (low + high) - view.eyeM;
-    const double radiusM = 0.5 * glm::length(high - low);
+    const glm::dvec3 centreM = 0.5 * (box->low + box->high) - view.eyeM;
+    const double radiusM = 0.5 * glm::length(box->high - box->low);
+    const double share = radiusM / std::max(glm::length(centreM), 1e-3);
+    wholes_.push_back({centreM, radiusM});
+    cubes += cube(finePx(share));
     if (!mayBeSeen(cone, centreM, radiusM)) continue;
-    blocks_.push_back({.cloud = static_cast<std::uint32_t>(i),
-                       .centreM = centreM,
-                       .share = static_cast<float>(radiusM / std::max(glm::length(centreM), 1e-3))});
+    Block& block = blocks_.emplace_back();
+    block.cloud = static_cast<std::uint32_t>(i);
+    block.centreM = centreM;
+    block.share = static_cast<float>(share);
     bySize_.push_back(static_cast<std::uint32_t>(blocks_.size() - 1));
   }
   if (blocks_.empty()) return;
+  const double coarser = std::cbrt(std::min(fineness.cubes / cubes, 1.0));
   // The largest first.
   std::sort(bySize_.begin(), bySize_.end(), [this](std::uint32_t a, std::uint32_t b) {
     return blocks_[a].share != blocks_[b].share ? blocks_[a].share > blocks_[b].share : a < b;
   });
-  int row = 0, x = 0, last = detail_ == SplatDetail::kStill ? 0 : kFinestLive;
-  const int stacksWidth = kStacks * kClasses[static_cast<std::size_t>(last)].width();
-  std::size_t inClass = 0;
+  const int stacksWidth = kStacks * StackSize{static_cast<int>(fineness.mostPx)}.width();
+  int row = 0, x = 0;
+  StackSize last;
   for (const std::uint32_t i : bySize_) {
     Block& b = blocks_[i];
-    b.stackClass = last;
-    while (b.share < kClasses[static_cast<std::size_t>(b.stackClass)].leastShare ||
-           inClass >= kClasses[static_cast<std::size_t>(b.stackClass)].most) {
-      ++b.stackClass;
-      inClass = 0;
-    }
-    const StackClass& own = kClasses[static_cast<std::size_t>(b.stackClass)];
-    if (b.stackClass != last || x + kStacks * own.width() > stacksWidth) {
-      if (x > 0) row += kClasses[static_cast<std::size_t>(last)].height();
+    b.finePx = std::clamp(coarser * finePx(static_cast<double>(b.share)), kLeastPx, fineness.mostPx);
+    b.size.sidePx = kStepPx * static_cast<int>(std::ceil(b.finePx / kStepPx));
+    if (b.size.sidePx != last.sidePx || x + kStacks * b.size.width() > stacksWidth) {
+      if (x > 0) row += last.height();
       x = 0;
     }
-    last = b.stackClass;
-    ++inClass;
+    last = b.size;
     b.x = x, b.y = row;
-    x += kStacks * own.width();
+    x += kStacks * b.size.width();
   }
-  const int height = row + (x > 0 ? kClasses[static_cast<std::size_t>(last)].height() : 0);
+  const int height = stacksHeight_ = row + last.height();
   atLeast(slices_, toSlices_, stacksWidth, height, gpu::Format::kR32F);
   atLeast(depths_, toDepths_, stacksWidth, height, gpu::Format::kR32F);
 }
@@ -175,7 +221,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
 // What a cloud's balls add to the slices of a stack.
 void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
                          Block& block) {
-  const StackClass& own = kClasses[static_cast<std::size_t>(block.stackClass)];
+  const StackSize& own = block.size;
   const double centreM = glm::length(block.centreM);
   const bool perspective = beside == 2;
   // Of a ball: across, upward, away; and the scale of the picture there.
@@ -184,39 +230,76 @@ void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const 
     const double scale = perspective ? centreM / std::max(centreM + at.z, 0.1 * centreM) : 1.0;
     return glm::dvec4(at.x * scale, at.y * scale, at.z, scale);
   };
-  double half = 0.0, halfDepth = 0.0;
-  for (const field::Metaball& b : cloud.balls) {
-    if (!drawn(b)) continue;
-    const glm::dvec4 at = glm::abs(along(b));
-    half = std::max({half, at.x + at.w * b.radiusM, at.y + at.w * b.radiusM});
-    halfDepth = std::max(halfDepth, at.z + b.radiusM);
-  }
-  // Wider by what balls that are smaller than a texel are widened.
-  half *= own.sidePx / (own.sidePx - 4.0);
-  const double texelM = 2.0 * half / (own.sidePx - 2.0);
-  halfDepth += texelM;
+  const glm::dvec2 reach = *mixed<glm::dvec2>(
+      cloud,
+      [&](const field::Metaball& b, std::optional<glm::dvec2>& all) {
+        const glm::dvec4 at = glm::abs(along(b));
+        all = glm::max(all.value_or(glm::dvec2(0.0)),
+                       glm::dvec2(std::max(at.x, at.y) + at.w * b.radiusM, at.z + b.radiusM));
+      },
+      [](const glm::dvec2& fine, const glm::dvec2& coarse, double share) {
+        return glm::mix(fine, coarse, share);
+      });
+  // A margin for what balls that are smaller than a texel are widened, and for filtering.
+  const double texelM = 2.0 * reach.x / (block.finePx - 4.0);
+  const double half = 0.5 * texelM * (own.sidePx - 2.0);
+  // The first slice towards the light is for what shades the cloud from farther away.
+  const double sliceM = 2.0 * (reach.y + texelM) / (0.5 * block.finePx - (beside == 0 ? 2.0 : 0.0));
+  const double halfDepth = 0.5 * sliceM * own.slices();
   block.halves[static_cast<std::size_t>(2 * beside)] = static_cast<float>(half);
   block.halves[static_cast<std::size_t>(2 * beside + 1)] = static_cast<float>(halfDepth);
-  const double sliceM = 2.0 * halfDepth / own.slices;
   for (const field::Metaball& b : cloud.balls) {
     if (!drawn(b)) continue;
-    // So that no ball falls between texels; it keeps its mass.
     const glm::dvec4 at = along(b);
-    const double radiusM = std::max(b.radiusM, texelM / at.w), share = b.radiusM / radiusM;
-    const double z = at.z + halfDepth;
-    const int first = std::max(static_cast<int>((z - radiusM) / sliceM), 0);
-    const int end = std::min(static_cast<int>((z + radiusM) / sliceM) + 1, own.slices);
-    const double depth = b.density * share * share * share * radiusM;
-    const double px = block.x + beside * own.width() + (0.5 + 0.5 * at.x / half) * own.sidePx +
-                      -at.x / half;  // the margin: a texel on both sides
-    const double py = block.y + (0.5 + 0.5 * at.y / half) * own.sidePx - at.y / half;
-    for (int slice = first; slice < end; ++slice) {
-      const int column = slice % own.columns, row = slice / own.columns;
-      values_.insert(values_.end(),
-                     {static_cast<float>(px + own.sidePx * column), static_cast<float>(py + own.sidePx * row),
-                      static_cast<float>(at.w * radiusM / texelM), static_cast<float>(depth),
-                      static_cast<float>((slice * sliceM - z) / radiusM),
-                      static_cast<float>(((slice + 1) * sliceM - z) / radiusM), 0.0f, 0.0f});
+    addSlices(block, beside, {at.x, at.y, at.z + halfDepth, at.w * b.radiusM, b.radiusM, b.density}, texelM,
+              sliceM);
+  }
+}
+
+// A ball in the slices that it reaches into; z: from the stack's front. What is in front of the stack counts
+// to its first slice.
+void SplatPass::addSlices(const Block& block, int beside, const InStack& ball, double texelM, double sliceM) {
+  const StackSize& own = block.size;
+  // So that no ball falls between texels; it keeps its mass.
+  const double wider = std::max(texelM / ball.seenM, 1.0), radiusM = ball.radiusM * wider;
+  const int first = std::max(static_cast<int>((ball.z - radiusM) / sliceM), 0);
+  const int end = std::clamp(static_cast<int>(std::floor((ball.z + radiusM) / sliceM)) + 1, 1, own.slices());
+  const double depth = ball.density * radiusM / (wider * wider * wider);
+  const double px = 0.5 * own.sidePx + ball.x / texelM, py = 0.5 * own.sidePx + ball.y / texelM;
+  for (int slice = first; slice < end; ++slice) {
+    // Its tile, which it may not leave: see pass/splat_depth.vert.
+    const int left = block.x + beside * own.width() + own.sidePx * (slice % own.columns()),
+              lower = block.y + own.sidePx * (slice / own.columns());
+    values_.insert(values_.end(),
+                   {static_cast<float>(left + px), static_cast<float>(lower + py),
+                    static_cast<float>(wider * ball.seenM / texelM), static_cast<float>(depth),
+                    slice == 0 ? -1.0f : static_cast<float>((slice * sliceM - ball.z) / radiusM),
+                    static_cast<float>(((slice + 1) * sliceM - ball.z) / radiusM),
+                    static_cast<float>(256 * left + own.sidePx), static_cast<float>(lower)});
+  }
+}
+
+// What other clouds' balls add to the stack of the sun: those in front of it to its first slice.
+void SplatPass::addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
+                          const Block& block) {
+  const auto half = static_cast<double>(block.halves[0]), halfDepthM = static_cast<double>(block.halves[1]);
+  const double texelM = 2.0 * half / (block.size.sidePx - 2.0),
+               sliceM = 2.0 * halfDepthM / block.size.slices();
+  for (std::size_t c = 0; c < clouds.size(); ++c) {
+    const Whole& whole = wholes_[c];
+    if (c == block.cloud || whole.radiusM <= 0.0) continue;
+    const glm::dvec3 middle = (whole.centreM - block.centreM) * axes;
+    const double aheadM = -middle.z - halfDepthM;  // of the stack
+    if (std::max(std::abs(middle.x), std::abs(middle.y)) > half + whole.radiusM || aheadM > kShadeReachM ||
+        middle.z > halfDepthM + whole.radiusM)
+      continue;
+    const double share = 1.0 - glm::smoothstep(2.0 / 3.0, 1.0, aheadM / kShadeReachM);
+    for (const field::Metaball& b : clouds[c].balls) {
+      if (!drawn(b)) continue;
+      const glm::dvec3 at = (b.centreM - eyeM - block.centreM) * axes;
+      if (std::max(std::abs(at.x), std::abs(at.y)) > half + b.radiusM) continue;
+      addSlices(block, 0, {at.x, at.y, at.z + halfDepthM, b.radiusM, b.radiusM, share * b.density}, texelM,
+                sliceM);
     }
   }
 }
@@ -226,28 +309,28 @@ void SplatPass::drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3&
   values_.clear();
   for (Block& b : blocks_) {
     addStack(clouds[b.cloud], eyeM, sun, 0, b);
+    addShades(clouds, eyeM, sun, b);
     addStack(clouds[b.cloud], eyeM, sky, 1, b);
     b.halves[4] = b.halves[5] = 0.0f;
     if (b.share * kEyeStackFrom < 1.0) addStack(clouds[b.cloud], eyeM, axesOf(-b.centreM), 2, b);
   }
   inSlices_.upload(values_);
-  const glm::vec2 perTexel(1.0f / static_cast<float>(slices_.width()),
-                           1.0f / static_cast<float>(slices_.height()));
+  const gpu::Tile area{0, 0, slices_.width(), stacksHeight_};
+  const glm::vec2 perTexel = 1.0f / glm::vec2(area.width, area.height);
   depth_.set("uPerTexel", perTexel);
   toSlices_->clear();
-  inSlices_.draw(depth_, *toSlices_, {.blend = gpu::Blend::kAdd});
+  inSlices_.draw(depth_, {toSlices_->id(), area}, {.blend = gpu::Blend::kAdd});
 
   values_.clear();
   for (const Block& b : blocks_) {
-    const StackClass& own = kClasses[static_cast<std::size_t>(b.stackClass)];
     for (int beside = 0; beside < kStacks; ++beside)
-      values_.insert(values_.end(), {static_cast<float>(b.x + beside * own.width()), static_cast<float>(b.y),
-                                     static_cast<float>(own.sidePx), 0.0f});
+      values_.insert(values_.end(), {static_cast<float>(b.x + beside * b.size.width()),
+                                     static_cast<float>(b.y), static_cast<float>(b.size.sidePx), 0.0f});
   }
   inBlocks_.upload(values_);
   sum_.set("uPerTexel", perTexel);
   sum_.bind("uSlices", slices_);
-  inBlocks_.draw(sum_, *toDepths_, {});
+  inBlocks_.draw(sum_, {toDepths_->id(), area}, {});
   light_.set("uSunStack", glm::mat3(sun));
   light_.set("uSkyStack", glm::mat3(sky));
 }
@@ -290,14 +373,14 @@ void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tab
   atLeast(tiles_, toTiles_, kTilesInRow * tilePx, rows * tilePx, gpu::Format::kRgba32F);
   tileLayout_ = glm::vec3(tilePx, tiles_.width() / static_cast<float>(tilePx),
                           tiles_.height() / static_cast<float>(tilePx));
-  light_.set("uTiles", tileLayout_);
+  light_.set("uTiles", glm::vec3(tilePx, kTilesInRow, rows));
   light_.set("uTilesInRow", static_cast<float>(kTilesInRow));
   light_.set("uEyeM", static_cast<float>(view.eyeM.z));
   light_.set("uEnuFromCamera", view.enuFromCamera);
   light_.set("uRayScale", view.rayScale);
   tables.bind(light_);
   light_.bind("uDepths", depths_);
-  inTiles_.draw(light_, *toTiles_, {});
+  inTiles_.draw(light_, {toTiles_->id(), {0, 0, kTilesInRow * tilePx, rows * tilePx}}, {});
 }
 
 void SplatPass::drawBalls(const shading::ViewParts& view, const SplatTarget& to) {
@@ -390,15 +473,18 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
     const Piece& b = pieces_[order_[tile]];
     const Block& block = blocks_[b.block];
     const SplatCloud& cloud = clouds[block.cloud];
-    const StackClass& own = kClasses[static_cast<std::size_t>(block.stackClass)];
     const glm::vec3 centre(block.centreM);
+    const double radii = 1.0 / std::max(static_cast<double>(block.share), 1e-9);
+    // With the phase function, whose number is whole, how much the stack from the eye counts.
+    const auto eyeStack =
+        static_cast<float>(kEyeStackPart * glm::smoothstep(kEyeStackFrom, kEyeStackAll, radii));
     values_.insert(values_.end(), {b.centreM.x,
                                    b.centreM.y,
                                    b.centreM.z,
                                    b.radiusM,
                                    b.density,
                                    static_cast<float>(tile),
-                                   static_cast<float>(cloud.phase),
+                                   static_cast<float>(cloud.phase) + eyeStack,
                                    cloud.albedo,
                                    centre.x,
                                    centre.y,
@@ -410,7 +496,7 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
                                    block.halves[3],
                                    static_cast<float>(block.x),
                                    static_cast<float>(block.y),
-                                   static_cast<float>(own.sidePx),
+                                   static_cast<float>(block.size.sidePx),
                                    block.halves[5]});
   }
   inTiles_.upload(values_);

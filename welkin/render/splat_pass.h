@@ -8,7 +8,7 @@
 // From them, the light that each ball sends to the eye, along 4 x 4 rays through it (16 x 16 in stills). Eye
 // pass: the balls from far to near, each with its exact optical depth along every ray. Light scattered more
 // than once is lib/cloud_light.glsl's, as in marched volumes. The phase function is the first scattering's;
-// all later ones are those of droplets. Clouds do not shade one another.
+// all later ones are those of droplets. Clouds shade one another in the sun, not under the sky.
 //
 // Of other things in the sky it knows nothing but the depth that an engine hands over: it draws over what is
 // in the target.
@@ -41,6 +41,10 @@ struct SplatCloud {
   std::span<const field::Metaball> balls;
   SplatPhase phase = SplatPhase::kDroplets;
   float albedo = 1.0f;  // 0.9 in P. Man
+  // Where two levels of detail fade into one another, the balls of the coarser come first: so many, and their
+  // share. What is found for a cloud's extent then fades with them.
+  std::size_t coarse = ~std::size_t{0};
+  float coarseShare = 1.0f;
 };
 
 struct SplatTarget {
@@ -61,6 +65,9 @@ class SplatPass {
   explicit SplatPass(SplatDetail detail = SplatDetail::kLive);
   ~SplatPass();
 
+  // Makes room for so many clouds and balls around the eye.
+  void reserve(std::size_t clouds, std::size_t balls);
+
   // What all draws under one sky share; before draws and whenever the sky has changed.
   void setSky(const shading::Uniforms& sky, const glm::vec3& toLight);
 
@@ -77,6 +84,11 @@ class SplatPass {
 
  private:
   struct Block;  // a cloud in view, and where its stacks are
+  // Any cloud, in view or not: what it shades it need not be seen with.
+  struct Whole {
+    glm::dvec3 centreM;  // from the eye
+    double radiusM;
+  };
   struct Piece {
     glm::vec3 centreM;  // from the eye
     float radiusM, density;
@@ -86,6 +98,14 @@ class SplatPass {
   void drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
                 Block& block);
+  struct InStack {
+    double x, y, z;         // m, z from the front of the stack
+    double seenM, radiusM;  // the radius across, as seen in perspective, and along
+    double density;
+  };
+  void addSlices(const Block& block, int beside, const InStack& ball, double texelM, double sliceM);
+  void addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
+                 const Block& block);
   void sort();
   void drawLight(const shading::ViewParts& view, const SkyTextures& tables);
   void drawBalls(const shading::ViewParts& view, const SplatTarget& to);
@@ -96,10 +116,12 @@ class SplatPass {
   gpu::Instances inSlices_{2}, inBlocks_{1}, inTiles_{5}, quads_{2};
   gpu::Texture2D slices_, depths_, tiles_;
   std::optional<gpu::Framebuffer> toSlices_, toDepths_, toTiles_;
+  int stacksHeight_ = 0;        // texels of the stacks' textures that are in use
   glm::vec3 tileLayout_{1.0f};  // texels on a tile's side; tiles that the texture has room for, across and up
   gpu::TexelReader depthReader_;
   glm::vec3 toLight_{0.0f, 0.0f, 1.0f};
   std::vector<Block> blocks_;
+  std::vector<Whole> wholes_;  // of each cloud; radius 0: none
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> order_;  // far to near, as the last frame had it
   std::vector<float> distances_;      // of each piece

@@ -14,6 +14,7 @@ constexpr int kShapes = 4;
 constexpr std::array<std::size_t, kLibraryLevels> kBalls = {12, 60, 240};
 constexpr double kWidthM = 1200.0, kVoxelM = 40.0;
 constexpr double kEffort = 0.4;
+constexpr int kBelow = 6;  // voxels of clear air under the base, so that balls do not bulge out of it
 
 LibraryCloud made(double heightM, std::int64_t seed) {
   field::CumulusParams tower;
@@ -23,10 +24,11 @@ LibraryCloud made(double heightM, std::int64_t seed) {
   tower.bubbles = 6;
   const std::vector<field::Ellipsoid> bubbles = field::cumulusTower(tower);
   const field::CloudMapParams params = field::cumulusMap(tower, kVoxelM);
-  const Volume<float> map = field::cloudMap(params, bubbles);
-  const field::VoxelFrame frame{static_cast<int>(params.nx), static_cast<int>(params.ny),
-                                static_cast<int>(params.nz), glm::dvec3(params.voxelM),
-                                field::firstVoxelM(params)};
+  Volume<float> map = field::cloudMap(params, bubbles);
+  map.nz += kBelow;
+  map.data.insert(map.data.begin(), static_cast<std::size_t>(kBelow * map.nx * map.ny), 0.0f);
+  field::VoxelFrame frame{map.nx, map.ny, map.nz, glm::dvec3(params.voxelM), field::firstVoxelM(params)};
+  frame.firstVoxelM.z -= kBelow * params.voxelM;
   std::vector<fit::FitLevel> levels;
   levels.reserve(kBalls.size());
   for (const std::size_t count : kBalls) levels.push_back({.count = count, .balls = {}});

@@ -36,6 +36,7 @@ class MetaballLayer {
   std::vector<float> opticalDepths(double secondsAfter, const glm::dvec2& driftedM, int directions) const;
 
   const weather::Layer& layer() const { return layer_; }
+  bool isFlat() const { return flat_; }  // its clouds are the library's flat ones, not towers
 
  private:
   weather::Layer layer_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "welkin/core/error.h"
 #include "welkin/core/random.h"
@@ -18,6 +19,38 @@ namespace {
 // A level will do whose balls are no larger in view.
 constexpr double kBallRad = 0.003;
 constexpr double kLayerBallRad = 0.008;  // of a layer's, which are many
+// Two levels fade into one another over that share of the distance at which the coarser one would do.
+constexpr double kFade = 0.3;
+
+// The coarsest level that will do at a distance, and how much of it there is: the rest is of the next finer.
+struct LevelShare {
+  std::size_t level = 0;
+  double share = 1.0;
+};
+LevelShare levelAt(std::span<const double> radiiM, double ballRad, double distanceM, MetaballDetail detail) {
+  const std::size_t finest = radiiM.size() - 1;
+  if (detail == MetaballDetail::kFinest) return {finest, 1.0};
+  for (std::size_t level = 0; level < finest; ++level) {
+    const double fromM = radiiM[level] / ballRad;
+    if (distanceM > fromM) return {level, glm::smoothstep(1.0, 1.0 + kFade, distanceM / fromM)};
+  }
+  return {finest, 1.0};
+}
+
+// Appends the balls of both, f(ball) each, and returns where those of the coarser one end.
+template <class Levels, class F>
+std::size_t append(const Levels& levels, const LevelShare& seen, F&& f, std::vector<field::Metaball>& out) {
+  const auto some = [&](std::size_t level, double share) {
+    for (const field::Metaball& b : levels[level]) {
+      out.push_back(f(b));
+      out.back().density *= share;
+    }
+  };
+  some(seen.level, seen.share);
+  const std::size_t coarseEnd = out.size();
+  if (seen.share < 1.0) some(seen.level + 1, 1.0 - seen.share);
+  return coarseEnd;
+}
 
 }  // namespace
 
@@ -83,47 +116,94 @@ std::vector<float> MetaballSky::layerOpticalDepths(std::size_t layer, double sec
   return filled->layer.opticalDepths(secondsAfter, driftOf(*filled, secondsAfter), directions);
 }
 
-void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM,
-                     CloudBalls& out) const {
+void MetaballSky::live(const MetaballCloud& c, double secondsAfter, std::span<field::Metaball> balls) {
+  if (c.lifeS <= 0.0) return;
+  const double from = radians(c.windFromDeg);
+  field::MetaballMotion motion;
+  motion.shearPerS = -c.shearPerS * glm::dvec3(std::sin(from), std::cos(from), 0.0);
+  motion.referenceM = c.positionM.z;
+  motion.lifeS = c.lifeS;
+  field::move(balls, motion, secondsAfter);
+}
+
+MetaballInstances MetaballSky::instancesAt(double secondsAfter, const glm::dvec2& eyeM) const {
+  MetaballInstances all;
+  const auto endShape = [&](std::size_t begin) {
+    all.shapes.push_back({all.balls.size(), field::boundsOf(std::span(all.balls).subspan(begin))});
+  };
+  for (const Placed& placed : clouds_) {
+    const MetaballCloud& c = placed.cloud;
+    const glm::dvec2 drifted = c.windSpeedMps * windPath(drift_, windSeed_, c.windFromDeg, secondsAfter);
+    const std::size_t begin = all.balls.size();
+    all.balls.insert(all.balls.end(), placed.levels.back().begin(), placed.levels.back().end());
+    live(c, secondsAfter, std::span(all.balls).subspan(begin));
+    // Decayed ones have no size.
+    const auto gone = [](const field::Metaball& b) { return b.radiusM <= 0.0 || b.density == 0.0; };
+    all.balls.erase(
+        std::remove_if(all.balls.begin() + static_cast<std::ptrdiff_t>(begin), all.balls.end(), gone),
+        all.balls.end());
+    if (all.balls.size() == begin) continue;
+    all.instances.push_back({all.shapes.size(), glm::dvec3(drifted - eyeM, 0.0), 1.0, 0.0, 1.0});
+    endShape(begin);
+  }
+  std::vector<MetaballLayer::Cloud> clouds;
+  std::array<std::size_t, 2> firstShapes{};  // of towers and of flat ones; 0: none yet
+  for (const Filled& filled : layers_) {
+    filled.layer.cloudsAt(secondsAfter, driftOf(filled, secondsAfter), eyeM, clouds);
+    if (clouds.empty()) continue;
+    std::size_t& first = firstShapes[filled.layer.isFlat() ? 1 : 0];
+    if (first == 0) {
+      first = all.shapes.size() + 1;
+      for (const LibraryCloud& shape : filled.layer.isFlat() ? flatCumulus() : cumulusTowers()) {
+        const std::size_t begin = all.balls.size();
+        all.balls.insert(all.balls.end(), shape.levels.back().begin(), shape.levels.back().end());
+        endShape(begin);
+      }
+    }
+    for (const MetaballLayer::Cloud& cloud : clouds)
+      all.instances.push_back({first - 1 + cloud.shape, cloud.baseM - glm::dvec3(eyeM, 0.0), cloud.widthM,
+                               cloud.turnRad, cloud.extinctionPerM});
+  }
+  return all;
+}
+
+void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM, CloudBalls& out,
+                     MetaballDetail detail) const {
   out.balls.clear();
   out.clouds.clear();
   for (const Placed& placed : clouds_) {
     const MetaballCloud& c = placed.cloud;
     const glm::dvec2 drifted = c.windSpeedMps * windPath(drift_, windSeed_, c.windFromDeg, secondsAfter);
     const double distanceM = glm::length(placed.middleM + glm::dvec3(drifted, 0.0) - eyeM);
-    std::size_t level = 0;
-    while (level + 1 < placed.levels.size() && placed.radiiM[level] > kBallRad * distanceM) ++level;
     const std::size_t begin = out.balls.size();
-    out.balls.insert(out.balls.end(), placed.levels[level].begin(), placed.levels[level].end());
+    const LevelShare level = levelAt(placed.radiiM, kBallRad, distanceM, detail);
+    const std::size_t coarseEnd =
+        append(placed.levels, level, [](const field::Metaball& b) { return b; }, out.balls);
     const std::span<field::Metaball> own = std::span(out.balls).subspan(begin);
-    if (c.lifeS > 0.0) {
-      const double from = radians(c.windFromDeg);
-      field::MetaballMotion motion;
-      motion.shearPerS = -c.shearPerS * glm::dvec3(std::sin(from), std::cos(from), 0.0);
-      motion.referenceM = c.positionM.z;
-      motion.lifeS = c.lifeS;
-      field::move(own, motion, secondsAfter);
-    }
+    live(c, secondsAfter, own);
     for (field::Metaball& b : own) {
       b.centreM += glm::dvec3(drifted, 0.0);
       b.centreM = overEarth(b.centreM, eyeM, earthRadiusM);
     }
-    out.clouds.push_back({out.balls.size(), c.phase, static_cast<float>(c.albedo)});
+    out.clouds.push_back({out.balls.size(), c.phase, static_cast<float>(c.albedo), coarseEnd,
+                          static_cast<float>(level.share)});
   }
-  std::vector<MetaballLayer::Cloud> clouds;
   for (const Filled& filled : layers_) {
-    filled.layer.cloudsAt(secondsAfter, driftOf(filled, secondsAfter), glm::dvec2(eyeM), clouds);
-    for (const MetaballLayer::Cloud& cloud : clouds) {
+    filled.layer.cloudsAt(secondsAfter, driftOf(filled, secondsAfter), glm::dvec2(eyeM), out.filled);
+    for (const MetaballLayer::Cloud& cloud : out.filled) {
       const double distanceM = glm::length(cloud.baseM - eyeM);
-      std::size_t level = 0;
-      while (level + 1 < kLibraryLevels &&
-             filled.layer.shape(cloud).radii[level] * cloud.widthM > kLayerBallRad * distanceM)
-        ++level;
-      for (const field::Metaball& b : filled.layer.shape(cloud).levels[level]) {
-        out.balls.push_back(placed(b, cloud));
-        out.balls.back().centreM = overEarth(out.balls.back().centreM, eyeM, earthRadiusM);
-      }
-      out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f});
+      const LibraryCloud& shape = filled.layer.shape(cloud);
+      const LevelShare level = levelAt(shape.radii, kLayerBallRad, distanceM / cloud.widthM, detail);
+      const std::size_t coarseEnd = append(
+          shape.levels, level,
+          [&](const field::Metaball& b) {
+            field::Metaball at = placed(b, cloud);
+            at.centreM = overEarth(at.centreM, eyeM, earthRadiusM);
+            return at;
+          },
+          out.balls);
+      out.clouds.push_back(
+          {out.balls.size(), MetaballPhase::kDroplets, 1.0f, coarseEnd, static_cast<float>(level.share)});
     }
   }
 }

@@ -23,6 +23,9 @@ struct Scene;
 // Of the first scattering.
 enum class MetaballPhase { kDroplets, kRayleigh, kIsotropic };
 
+// How they are drawn: by splats, lit in two passes; or marched, as all volumes are.
+enum class MetaballRender { kSplats, kVolume };
+
 // One by hand: [[metaballs]] of a scene file.
 struct MetaballCloud {
   std::string file;                           // scene/metaball_file.h
@@ -48,13 +51,46 @@ struct CloudBalls {
     std::size_t end = 0;  // of its balls; they begin where the one before ends
     MetaballPhase phase = MetaballPhase::kDroplets;
     float albedo = 1.0f;
+    // Where two levels of detail fade into one another: the end of the coarser one's balls, which come first,
+    // and its share.
+    std::size_t coarseEnd = end;
+    float coarseShare = 1.0f;
   };
   std::vector<field::Metaball> balls;
   std::vector<Cloud> clouds;
+  std::vector<MetaballLayer::Cloud> filled;  // kept for its memory
 
   std::span<const field::Metaball> ballsOf(std::size_t cloud) const {
     const std::size_t begin = cloud == 0 ? 0 : clouds[cloud - 1].end;
     return std::span(balls).subspan(begin, clouds[cloud].end - begin);
+  }
+};
+
+// As an eye sees them: coarser versions of clouds that are far away, fading into one another with the
+// distance; or all of them in full.
+enum class MetaballDetail { kAsSeen, kFinest };
+
+// All clouds at one instant in full detail, as shapes and where they stand.
+struct MetaballInstances {
+  // In a frame of its own: x east, y north, z up; densities are not extinctions yet.
+  struct Shape {
+    std::size_t end = 0;  // of its balls; they begin where the one before ends
+    field::Box box;
+  };
+  struct Instance {
+    std::size_t shape = 0;
+    glm::dvec3 positionM{0.0};  // of the shape's origin: along the ground from the eye's foot, and above it
+    double scale = 1.0;
+    double turnRad = 0.0;  // clockwise as seen from above
+    double extinctionPerM = 1.0;
+  };
+  std::vector<field::Metaball> balls;
+  std::vector<Shape> shapes;
+  std::vector<Instance> instances;
+
+  std::span<const field::Metaball> ballsOf(std::size_t shape) const {
+    const std::size_t begin = shape == 0 ? 0 : shapes[shape - 1].end;
+    return std::span(balls).subspan(begin, shapes[shape].end - begin);
   }
 };
 
@@ -71,9 +107,13 @@ class MetaballSky {
   // evenly over the hemisphere (field::hemisphereDirection), from the ground at the place.
   std::vector<float> layerOpticalDepths(std::size_t layer, double secondsAfter, int directions) const;
 
-  // At an instant and as detailed as an eye there sees them, over the curved earth. A pure function of the
-  // arguments; without layers it allocates nothing once `out` has held as many.
-  void at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM, CloudBalls& out) const;
+  // At an instant about an eye, over the curved earth. A pure, continuous function of the arguments; it
+  // allocates nothing once `out` has held as many.
+  void at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM, CloudBalls& out,
+          MetaballDetail detail = MetaballDetail::kAsSeen) const;
+
+  // The same clouds for who draws them as volumes, about an eye east and north of the place.
+  MetaballInstances instancesAt(double secondsAfter, const glm::dvec2& eyeM) const;
 
  private:
   struct Placed {
@@ -87,6 +127,8 @@ class MetaballSky {
     MetaballLayer layer;
   };
   glm::dvec2 driftOf(const Filled& filled, double secondsAfter) const;
+  // Balls of a cloud by hand move, grow and decay; but for its drift as a whole.
+  static void live(const MetaballCloud& cloud, double secondsAfter, std::span<field::Metaball> balls);
 
   std::vector<Placed> clouds_;
   std::vector<Filled> layers_;
@@ -100,4 +142,6 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::MetaballPhase> =
     std::array<std::string_view, 3>{"droplets", "rayleigh", "isotropic"};
+template <>
+inline constexpr auto kEnumNames<scene::MetaballRender> = std::array<std::string_view, 2>{"splats", "volume"};
 }  // namespace welkin

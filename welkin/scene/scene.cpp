@@ -86,6 +86,10 @@ void describe(Scene& s, ParamVisitor& v) {
             "with living octaves; metaballs: cumulus, stratocumulus and cumulonimbus as clouds of balls, the "
             "others as volumes"},
            s.technique);
+  v.choice({"metaballs_as", "",
+            "how clouds of metaballs are drawn: as splats, lit in two passes, or marched as all volumes are, "
+            "with the light of droplets"},
+           s.metaballsAs);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.value({"theme", "",
            "what technique, tier, drift and sheets start from: thesis-overcast, thesis-broken, thesis-few, "

@@ -78,17 +78,19 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
     if (!above || timesMet(sheets[i], eyeM) == 2) up += hit("true");
   }
   const bool sameTier = std::ranges::all_of(sheets, [&](const auto& s) { return s.tier == sheets[0].tier; });
-  return {{"WELKIN_EACH_LAYER(CALL)", layers},
-          {"WELKIN_SHEET_TIER(i)",
-           sameTier ? std::to_string(static_cast<int>(sheets[0].tier)) : "int(uSheetSky[i].w + 0.5)"},
-          {"WELKIN_HITS", std::to_string(hitCount)},
-          {"WELKIN_EACH_HIT(CALL)", hits},
-          {"WELKIN_SHEETS", std::to_string(sheets.size())},
-          {"WELKIN_PIECES", std::to_string(pieces.size())},
-          {"WELKIN_EACH_SHEET(CALL)", each},
-          {"WELKIN_EACH_SHADOW(FLAT, MEAN)", shadows},
-          {"WELKIN_EACH_DOWN(BAND, SHEET)", down},
-          {"WELKIN_EACH_UP(BAND, SHEET)", up}};
+  ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", layers},
+                        {"WELKIN_SHEET_TIER(i)", sameTier ? std::to_string(static_cast<int>(sheets[0].tier))
+                                                          : "int(uSheetSky[i].w + 0.5)"},
+                        {"WELKIN_HITS", std::to_string(hitCount)},
+                        {"WELKIN_EACH_HIT(CALL)", hits},
+                        {"WELKIN_SHEETS", std::to_string(sheets.size())},
+                        {"WELKIN_PIECES", std::to_string(pieces.size())},
+                        {"WELKIN_EACH_SHEET(CALL)", each},
+                        {"WELKIN_EACH_SHADOW(FLAT, MEAN)", shadows},
+                        {"WELKIN_EACH_DOWN(BAND, SHEET)", down},
+                        {"WELKIN_EACH_UP(BAND, SHEET)", up}};
+  addBallDefines(layout, defines);
+  return defines;
 }
 
 Uniforms sheetUniforms(const LightVolumeLayout& layout, std::span<const SheetOnRay> sheets,

@@ -184,7 +184,7 @@ Uniforms projectorUniforms(const scene::SkyState& state) {
           {"uProjector.enuFromCamera", p.enuFromCamera}};
 }
 
-LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
+LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<glm::vec2> ballsM) {
   constexpr float kSpacingM = 70.0f;
   constexpr int kFewest = 5, kMost = 24;
   constexpr float kThinnestM = 50.0f;
@@ -201,17 +201,20 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state) {
     volumes.push_back(i);
     cuts.insert(cuts.end(), {layers[i].baseM, layers[i].topM});
   }
+  if (ballsM) cuts.insert(cuts.end(), {ballsM->x, ballsM->y});
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
-    LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}};
+    LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}, false};
     for (const std::size_t i : volumes)
       if (layers[i].baseM <= band.baseM && layers[i].topM >= band.topM)
         band.layers.push_back(static_cast<int>(i));
-    if (band.layers.empty() || band.topM <= band.baseM) continue;
+    band.balls = ballsM && ballsM->x <= band.baseM && ballsM->y >= band.topM;
+    if ((band.layers.empty() && !band.balls) || band.topM <= band.baseM) continue;
     // Too thin to be worth a band of its own, or no more of them to be had: to the one beneath.
     const bool touches = !layout.bands.empty() && layout.bands.back().topM == band.baseM;
     if ((touches && band.topM - band.baseM < kThinnestM) || layout.bands.size() == kMostBands) {
       layout.bands.back().topM = band.topM;
+      layout.bands.back().balls |= band.balls;
       for (const int i : band.layers)
         if (std::ranges::find(layout.bands.back().layers, i) == layout.bands.back().layers.end())
           layout.bands.back().layers.push_back(i);
@@ -264,6 +267,13 @@ std::string layerCalls(const LightVolumeLayout& layout, int band) {
   return calls;
 }
 
+void addBallDefines(const LightVolumeLayout& layout, ShaderDefines& defines) {
+  std::string bands;
+  for (std::size_t b = 0; b < layout.bands.size(); ++b)
+    if (layout.bands[b].balls) bands += (bands.empty() ? "band == " : " || band == ") + std::to_string(b);
+  if (!bands.empty()) defines.emplace_back("WELKIN_BALLS(band)", "(" + bands + ")");
+}
+
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
   std::string layers, down, up;
   for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b) {
@@ -272,13 +282,18 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
     up += call;
     if (eyeM > layout.bands[static_cast<std::size_t>(b)].baseM) down = call + down;
   }
-  return {{"WELKIN_EACH_LAYER(CALL)", layers},
-          {"WELKIN_EACH_BAND_DOWN(CALL)", down},
-          {"WELKIN_EACH_BAND_UP(CALL)", up}};
+  ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", layers},
+                        {"WELKIN_EACH_BAND_DOWN(CALL)", down},
+                        {"WELKIN_EACH_BAND_UP(CALL)", up}};
+  addBallDefines(layout, defines);
+  return defines;
 }
 
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band) {
-  return {{"WELKIN_BAND", std::to_string(band)}, {"WELKIN_EACH_LAYER(CALL)", layerCalls(layout, band)}};
+  ShaderDefines defines{{"WELKIN_BAND", std::to_string(band)},
+                        {"WELKIN_EACH_LAYER(CALL)", layerCalls(layout, band)}};
+  if (layout.bands[static_cast<std::size_t>(band)].balls) defines.emplace_back("WELKIN_BALLS(band)", "true");
+  return defines;
 }
 
 }  // namespace welkin::shading

@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -63,6 +64,7 @@ struct LightVolumeLayout {
     float baseM, topM;
     int firstSlice, lastSlice;
     std::vector<int> layers;  // that lie in it, by their indices in the field
+    bool balls = false;       // metaballs, too, as volumes
 
     bool operator==(const Band&) const = default;
   };
@@ -74,7 +76,8 @@ struct LightVolumeLayout {
   glm::vec3 line{0, 0, 1};      // along which depths are summed; z > 0
   bool towardsSun = true;       // or away from it
 };
-LightVolumeLayout lightVolumeLayout(const scene::SkyState& state);
+// ballsM: heights between which there are metaballs that are drawn as volumes.
+LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<glm::vec2> ballsM = {});
 // Sets of it what changes with the instant: the line.
 void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
@@ -84,6 +87,7 @@ Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
 using ShaderDefines = std::vector<ShaderDefine>;
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
-std::string layerCalls(const LightVolumeLayout& layout, int band);  // of the one and of the other
+std::string layerCalls(const LightVolumeLayout& layout, int band);             // of the one and of the other
+void addBallDefines(const LightVolumeLayout& layout, ShaderDefines& defines);  // of both
 
 }  // namespace welkin::shading

@@ -213,9 +213,6 @@ TEST(SkyTracer, RefusesWhatItDoesNotTrace) {
   scene::Scene s = testing::cloudyScene(40.0, {Genus::kCirrus});
   s.layers[0].technique = scene::Technique::kPlane;
   EXPECT_THROW(SkyTracer(scene::buildSky(s, 0.0), {}), ParameterError);
-  s = testing::cloudyScene(40.0, {Genus::kCumulus}, 1.0);
-  s.layers[0].technique = scene::Technique::kMetaballs;
-  EXPECT_THROW(SkyTracer(scene::buildSky(s, 0.0), {}), ParameterError);
 }
 
 scene::SkyState smallSky() {

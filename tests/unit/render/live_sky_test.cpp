@@ -9,12 +9,13 @@
 #include <new>
 
 #include "tests/testing/foreign_engine.h"
+#include "tests/testing/metaball_scene.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
-#include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
 #include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
+#include "welkin/render/sky_renderer.h"
 
 namespace {
 std::atomic<long> gAllocations{0};
@@ -218,15 +219,96 @@ scene::Scene marchedScene() {
   return s;
 }
 
-// What it does not draw is said, and what was there stays.
-TEST_F(LiveSkyTest, RefusesMetaballs) {
-  LiveSky sky;
-  sky.update(thinScene(), 0.0);
-  const Image<float> before = drawn(sky);
-  scene::Scene s = cloudyScene(35.0, {Genus::kCumulus}, 1.0);
+// A sky of metaballs from the library, with a sheet over them.
+scene::Scene heapedScene() {
+  scene::Scene s = cloudyScene(35.0, {Genus::kCumulus, Genus::kCirrus});
+  s.layers[0].oktas = 1.0;
   s.layers[0].technique = scene::Technique::kMetaballs;
-  EXPECT_THROW(sky.update(s, 0.0), ParameterError);
-  EXPECT_EQ(drawn(sky).data, before.data);
+  s.layers[1].technique = scene::Technique::kSkyPlane;
+  s.output.width = 64;
+  s.output.height = 36;
+  return s;
+}
+
+// As stills draw them, but for what light is sampled at.
+TEST_F(LiveSkyTest, DrawsMetaballsAsStillsDo) {
+  const scene::Scene s = heapedScene();
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const Image<float> live = drawn(sky);
+  EXPECT_EQ(firstBadValue(live), -1);
+  scene::Scene clear = s;
+  clear.layers.erase(clear.layers.begin());
+  sky.update(clear, 0.0);
+  EXPECT_GT(relativeDifference(drawn(sky), live), 0.02);
+  const Image<float> still = SkyRenderer().draw(scene::buildSky(s, 0.0)).luminance;
+  context.makeCurrent();
+  EXPECT_LT(relativeDifference(live, still), 0.1);
+}
+
+// Relit by every hour, and whatever was drawn before.
+TEST_F(LiveSkyTest, AFrameWithMetaballsIsTheSameFirstOrAfterOthers) {
+  const scene::Scene s = heapedScene();
+  LiveSky first;
+  first.update(s, 100.0);
+  const Image<float> expected = drawn(first);
+  LiveSky other;
+  other.update(s, 0.0);
+  drawn(other);
+  other.update(s, 7200.0);
+  EXPECT_GT(relativeDifference(drawn(other), expected), 0.1);
+  other.update(s, 100.0);
+  EXPECT_EQ(drawn(other).data, expected.data);
+}
+
+TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAfterMetaballs) {
+  LiveSky sky;
+  const ForeignEngine engine;
+  const auto before = engine.state();
+  scene::Scene s = heapedScene();
+  for (int i = 0; i < 3; ++i) {
+    s.layers[1].technique = i < 2 ? scene::Technique::kSkyPlane : scene::Technique::kVolume;
+    sky.update(s, 10.0 * i);
+    EXPECT_EQ(engine.state(), before);
+    sky.draw(shading::viewOf(sky.state()), gpu::Target(engine.framebuffer(), {0, 0, 16, 8}),
+             {.scale = 1e-4f, .flare = 0.01f});
+    EXPECT_EQ(engine.state(), before);
+  }
+}
+
+// Time runs, the eye flies and looks about.
+TEST_F(LiveSkyTest, FramesWithMetaballsAllocateNothing) {
+  LiveSky sky;
+  const scene::Scene s = heapedScene();
+  shading::View view = shading::viewOf(scene::buildSky(s, 0.0));
+  const auto frame = [&](int i) {
+    sky.update(s, 0.5 * i);
+    view.view[3].x += 20.0;
+    view.view[3].y -= 10.0;
+    sky.draw(view, target, {.scale = 1e-4f});
+  };
+  for (int i = 0; i < 3; ++i) frame(i);
+  const long before = gAllocations;
+  for (int i = 3; i < 16; ++i) frame(i);
+  EXPECT_EQ(gAllocations - before, 0);
+}
+
+// As in stills, a cloud over the eye darkens the ground.
+TEST_F(LiveSkyTest, MetaballsShadeTheGround) {
+  const MetaballFolder folder;
+  scene::Scene s = fromHeight(looking(clearScene(80.0), 0.0, -90.0, 20.0), 300.0);
+  s.output.width = 64;
+  s.output.height = 36;
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const double open = luminanceOf(meanOf(drawn(sky)));
+  s.metaballs.push_back(folder.ball(900.0, 0.05, {0.0, 0.0, 2500.0}));
+  sky.update(s, 0.0);
+  const Image<float> shaded = drawn(sky);
+  EXPECT_LT(luminanceOf(meanOf(shaded)), 0.6 * open);
+  const Image<float> still = SkyRenderer().draw(sky.state()).luminance;
+  context.makeCurrent();
+  EXPECT_LT(relativeDifference(shaded, still), 0.05);
 }
 
 TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAfterAMarch) {

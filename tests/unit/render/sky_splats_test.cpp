@@ -8,11 +8,13 @@
 #include <fstream>
 #include <string>
 
+#include "tests/testing/metaball_scene.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
 #include "welkin/render/sky_renderer.h"
+#include "welkin/scene/cumulus_library.h"
 #include "welkin/scene/metaball_file.h"
 
 namespace welkin::render {
@@ -133,6 +135,46 @@ TEST_F(SkySplatsTest, TheGroundIsDarkInTheirShadow) {
   const double open = luminanceOf(meanOf(drawn(s)));
   s.metaballs = {cloudAt(2500.0, 0.0)};
   EXPECT_LT(luminanceOf(meanOf(drawn(s))), 0.6 * open);
+}
+
+// A cloud comes nearer, through all levels of detail, the picture following it: no step changes more than
+// others.
+TEST_F(SkySplatsTest, LevelsOfDetailFade) {
+  const MetaballFolder files;
+  const scene::LibraryCloud& tower = scene::cumulusTowers()[0];
+  scene::Scene s = fromHeight(sized(clearScene(40.0), 24, 24), 8000.0);
+  scene::MetaballCloud cloud =
+      files.levels({tower.levels[0], tower.levels[1], tower.levels[2]}, {0.0, 0.0, 7600.0});
+  cloud.scale = 800.0;
+  cloud.extinctionPerM = 0.02;
+  cloud.windFromDeg = 0.0;
+  cloud.windSpeedMps = 100.0;
+  constexpr double kFromM = 100000.0, kCloser = 0.97;
+  cloud.positionM.y = kFromM;
+  s.metaballs = {cloud};
+  scene::SkyState state = scene::buildSky(s, 0.0);
+  std::vector<double> changes;
+  Image<float> before;
+  bool coarsest = false, finest = false;
+  for (double distanceM = kFromM; distanceM > 12000.0; distanceM *= kCloser) {
+    scene::CloudBalls balls;
+    state = scene::buildSky(s, (kFromM - distanceM) / cloud.windSpeedMps, &state);
+    state.metaballs->at(state.secondsAfter, {0.0, 0.0, 8000.0}, state.clouds->earthRadiusM(), balls);
+    coarsest |= balls.balls.size() == tower.levels[0].size();
+    finest |= balls.balls.size() == tower.levels[2].size();
+    scene::SkyState seen = state;
+    seen.scene.camera.fovDeg = 2.0 * std::atan(700.0 / distanceM) * 180.0 / 3.14159265358979;
+    seen.scene.camera.pitchDeg = -distanceM / 2.0 / 6371000.0 * 180.0 / 3.14159265358979;
+    const Image<float> picture = renderer.draw(seen).luminance;
+    if (!before.data.empty()) changes.push_back(relativeDifference(picture, before));
+    before = picture;
+  }
+  EXPECT_TRUE(coarsest);
+  EXPECT_TRUE(finest);
+  const double most = *std::ranges::max_element(changes);
+  std::ranges::sort(changes);
+  EXPECT_GT(changes.front(), 0.0);
+  EXPECT_LT(most, 3.0 * changes[changes.size() / 2]);
 }
 
 TEST_F(SkySplatsTest, SaysWhatIsWrong) {

@@ -66,10 +66,17 @@ class SplatTest : public ::testing::Test {
 
   // At heights from the eye's.
   Image<float> drawn(std::vector<field::Metaball> balls, SplatPhase phase = SplatPhase::kDroplets) {
-    for (field::Metaball& b : balls) b.centreM.z += state.scene.camera.eyeM;
+    return drawnTogether({std::move(balls)}, phase);
+  }
+  Image<float> drawnTogether(std::vector<std::vector<field::Metaball>> clouds,
+                             SplatPhase phase = SplatPhase::kDroplets) {
+    std::vector<SplatCloud> all;
+    for (std::vector<field::Metaball>& balls : clouds) {
+      for (field::Metaball& b : balls) b.centreM.z += state.scene.camera.eyeM;
+      all.push_back({balls, phase});
+    }
     target.clear();
-    const SplatCloud cloud{balls, phase};
-    pass.draw({&cloud, 1}, view, tables, {target});
+    pass.draw(all, view, tables, {target});
     return target.readPicture();
   }
 
@@ -191,6 +198,42 @@ TEST_F(SplatTest, ACloudHasALitSideAndADarkOneAndASilverLining) {
   EXPECT_GT(seen(-1.0, 0.2, SplatPhase::kDroplets), 1.3 * seen(1.0, 0.2, SplatPhase::kDroplets));
   EXPECT_GT(seen(1.0, 1e-4, SplatPhase::kDroplets), 1.5 * seen(-1.0, 1e-4, SplatPhase::kDroplets));
   EXPECT_GT(seen(1.0, 1e-4, SplatPhase::kDroplets), 1.5 * seen(1.0, 1e-4, SplatPhase::kIsotropic));
+}
+
+// A thick cloud in the sun's light of another makes it darker, in view or not; one behind or beside it does
+// not.
+TEST_F(SplatTest, ACloudShadesAnother) {
+  const field::Metaball lit{{0.0, kDistanceM, 0.0}, 150.0, 0.03};
+  const glm::dvec3 toSun(state.lights[0].direction);
+  const auto middle = [&](const std::vector<std::vector<field::Metaball>>& clouds) {
+    const Image<float> picture = drawnTogether(clouds);
+    return luminanceOf(pixel(picture, kSide / 2, kSide / 2)) / picture.at(kSide / 2, kSide / 2, 3);
+  };
+  const double alone = middle({{lit}});
+  field::Metaball other{lit.centreM + 1500.0 * toSun, 300.0, 0.3};
+  EXPECT_LT(middle({{lit}, {other}}), 0.85 * alone);
+  other.centreM = lit.centreM + 12500.0 * toSun;  // shadows end
+  EXPECT_NEAR(middle({{lit}, {other}}) / alone, 1.0, 0.02);
+  other.centreM = lit.centreM - 1500.0 * toSun;
+  EXPECT_NEAR(middle({{lit}, {other}}) / alone, 1.0, 0.02);
+  other.centreM = lit.centreM + 1500.0 * toSun + 600.0 * glm::normalize(glm::cross(toSun, {0.0, 0.0, 1.0}));
+  EXPECT_NEAR(middle({{lit}, {other}}) / alone, 1.0, 0.02);
+}
+
+// Two clouds that stand in one another are lit as one of all their balls.
+TEST_F(SplatTest, AParcelOfCloudsIsLitAsOne) {
+  const std::vector<field::Metaball> all = someBalls(120);
+  std::vector<std::vector<field::Metaball>> parts(2);
+  for (std::size_t i = 0; i < all.size(); ++i) parts[i % 2].push_back(all[i]);
+  const Image<float> whole = drawn(all), inParts = drawnTogether(parts);
+  double difference = 0.0, light = 0.0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const double a = luminanceOf(pixel(whole, x, y)), b = luminanceOf(pixel(inParts, x, y));
+      light += a;
+      difference += std::abs(a - b);
+    }
+  EXPECT_LT(difference, 0.15 * light);
 }
 
 }  // namespace

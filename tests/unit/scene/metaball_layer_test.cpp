@@ -49,6 +49,16 @@ TEST(CumulusLibrary, LevelsAreTheSameCloud) {
     }
 }
 
+// Little of a cloud hangs below its base.
+TEST(CumulusLibrary, BasesAreFlat) {
+  for (const auto* family : {&cumulusTowers(), &flatCumulus()})
+    for (const LibraryCloud& cloud : *family) {
+      std::vector<field::Metaball> lower = cloud.levels.back();
+      for (field::Metaball& b : lower) b.centreM.z += 0.04 + cloud.height;
+      EXPECT_LT(within(lower, cloud.height), 0.03 * within(cloud.levels.back(), cloud.height));
+    }
+}
+
 TEST(MetaballLayer, DeliversTheCoverAskedFor) {
   for (const double oktas : {1.0, 3.0, 6.0}) {
     const SkyState state = buildSky(heaps(oktas), 0.0);

@@ -160,6 +160,7 @@ ShaderDefines definesOfLayers(int count) {
       layout.bands.push_back({baseM, baseM + 500.0f, i, i + 2, {}});
     }
     layout.bands.back().layers.push_back(i);
+    layout.bands.back().balls = count == 2;  // metaballs among them
   }
   ShaderDefines defines = marchDefines(layout, 1200.0);
   defines.push_back({"WELKIN_BAND", "0"});

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clouds of metaballs for scenes, in files that go when the test does.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "welkin/field/metaballs.h"
+#include "welkin/scene/metaballs.h"
+
+namespace welkin::testing {
+
+class MetaballFolder {
+ public:
+  MetaballFolder();  // of its own: tests run side by side
+  ~MetaballFolder();
+  MetaballFolder(const MetaballFolder&) = delete;
+  MetaballFolder& operator=(const MetaballFolder&) = delete;
+
+  // At a place in the sky: east, north, above the ground. Densities are extinctions, 1/m.
+  scene::MetaballCloud cloud(const std::vector<field::Metaball>& balls, const glm::dvec3& positionM) const;
+  // A cloud of one ball.
+  scene::MetaballCloud ball(double radiusM, double extinctionPerM, const glm::dvec3& positionM) const;
+  // Of these levels, the fewest balls first.
+  scene::MetaballCloud levels(const std::vector<std::vector<field::Metaball>>& levels,
+                              const glm::dvec3& positionM) const;
+
+ private:
+  std::filesystem::path path_;
+  mutable int files_ = 0;
+};
+
+// Some hundred balls in a lump some 1000 m across, about the origin, of one extinction each.
+std::vector<field::Metaball> lumpOfBalls(int count, double extinctionPerM);
+
+}  // namespace welkin::testing

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/render/live_splats.h"
+
+#include <algorithm>
+
+#include "welkin/field/cloud_field.h"
+#include "welkin/render/sky_splats.h"
+
+namespace welkin::render {
+namespace {
+
+// While clouds drift and grow there may come to be more of them than at first.
+constexpr std::size_t kRoom = 2;
+
+}  // namespace
+
+bool LiveSplats::in(const scene::SkyState& state) {
+  return state.metaballs && !state.metaballs->empty();
+}
+
+void LiveSplats::change(const scene::SkyState& state) {
+  state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
+                      balls_);
+  balls_.balls.reserve(kRoom * balls_.balls.size());
+  balls_.filled.reserve(kRoom * balls_.filled.size());
+  balls_.clouds.reserve(kRoom * balls_.clouds.size());
+  clouds_.reserve(kRoom * balls_.clouds.size());
+  pass_.reserve(kRoom * balls_.clouds.size(), kRoom * balls_.balls.size());
+  eyeM_.reset();
+}
+
+void LiveSplats::update(const scene::SkyState& state, const shading::Uniforms& skyUniforms) {
+  pass_.setSky(skyUniforms, state.lights[0].direction);
+  eyeM_.reset();
+}
+
+void LiveSplats::lookFrom(const scene::SkyState& state, const glm::dvec3& eyeM) {
+  if (eyeM_ == eyeM) return;
+  eyeM_ = eyeM;
+  state.metaballs->at(state.secondsAfter, eyeM, state.clouds->earthRadiusM(), balls_);
+  splatClouds(balls_, clouds_);
+  double low = 1e9, high = 0.0;
+  for (const field::Metaball& b : balls_.balls) {
+    low = std::min(low, b.centreM.z);
+    high = std::max(high, b.centreM.z);
+  }
+  heightM_ = 0.5 * (std::max(low, 0.0) + high);  // of far ones, over the curved earth, the ground's
+  pass_.drawShadow(clouds_, eyeM);
+}
+
+void LiveSplats::draw(const shading::ViewParts& view, const SkyTextures& tables, const SplatTarget& to) {
+  pass_.draw(clouds_, view, tables, to);
+}
+
+}  // namespace welkin::render
