@@ -2,7 +2,8 @@
 // What lies behind the clouds: the clear sky with its discs, or the ground.
 //
 // Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
-// light that clouds let through to the ground at q.
+// light that clouds let through to the ground at q. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
+// the air too.
 
 #include "lib/ground.glsl"
 
@@ -79,12 +80,20 @@ vec3 groundLuminance(vec3 dir, float distanceM) {
 
 vec3 groundThroughAir(vec3 dir, float groundM) {
   vec3 inscatter, through;
+#ifdef WELKIN_AIR_SHADOWS
+  aerialShaded(dir, groundM, inscatter, through);
+#else
   aerial(dir, groundM, inscatter, through);
+#endif
   return groundLuminance(dir, groundM) * through + inscatter;
 }
 
 vec3 skyLuminance(vec3 dir) {
-  return atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+  vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
+#ifdef WELKIN_AIR_SHADOWS
+  sky = max(sky - shadowsInSky(dir), 0.0);
+#endif
+  return sky;
 }
 
 vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad) {

@@ -10,6 +10,7 @@
 
 uniform CloudLayer uLayers[8];
 uniform float uLayerIce[8];       // 1: ice crystals, 0: droplets
+uniform float uLayerCover[8];     // of the sky, [0, 1]
 uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
 uniform sampler3D uDetailNoise;
@@ -23,6 +24,7 @@ struct CloudSurfaces {
 struct CloudPoint {
   float extinction;  // 1/m
   float ice;         // the part of it that is ice
+  float cover;       // it times its layers' cover of the sky
   float clearM;      // where there is none: a distance within which it stays so
   float stepM;       // the longest step that resolves the layers here
   bool inside;       // between base and top of any layer
@@ -48,12 +50,13 @@ float clearanceInBand(int band, vec3 q, float detail, out CloudSurfaces surfaces
   return clearM;
 }
 
-void addLayer(CloudLayer layer, float ice, vec3 q, float surface, float detail, inout CloudPoint point) {
+void addLayer(CloudLayer layer, float ice, float cover, vec3 q, float surface, float detail, inout CloudPoint point) {
   if (q.z < layer.baseM || q.z > layer.topM) return;
   float clearM;
   float extinction = cloudExtinctionFrom(layer, uShapeNoise, uDetailNoise, q, surface, detail, clearM);
   point.extinction += extinction;
   point.ice += extinction * ice;
+  point.cover += extinction * cover;
   point.clearM = min(point.clearM, clearM);
   point.stepM = min(point.stepM, cloudStepM(layer));
   point.inside = true;
@@ -61,8 +64,8 @@ void addLayer(CloudLayer layer, float ice, vec3 q, float surface, float detail, 
 
 // Second half: what is there.
 CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfaces) {
-  CloudPoint point = CloudPoint(0.0, 0.0, 1e9, 1e9, false);
-#define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], q, surfaces.s[i], detail, point);
+  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, 1e9, 1e9, false);
+#define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
 #ifdef WELKIN_BALLS
   if (WELKIN_BALLS(band)) addBalls(q, point);

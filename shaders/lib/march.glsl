@@ -41,18 +41,6 @@ struct CloudRay {
 #endif
 };
 
-// Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.
-vec2 sphereCrossings(float h, float dirZ) {
-  float b = (uEarthRadiusM + uEyeM) * dirZ;
-  float c = (uEyeM - h) * (2.0 * uEarthRadiusM + uEyeM + h);  // r0^2 - r^2
-  float disc = b * b - c;
-  if (disc <= 0.0) return vec2(1.0, -1.0);
-  float root = sqrt(disc);
-  float q = b > 0.0 ? -b - root : -b + root;
-  float other = abs(q) > 1e-6 ? c / q : 0.0;
-  return vec2(min(q, other), max(q, other));
-}
-
 // The stretch of a ray inside a band on its way up (behind the lowest point) or down; x >= y: none. A ray whose lowest point is in the
 // band has one stretch, which counts as down.
 vec2 bandStretch(vec2 band, bool up, float dirZ) {
@@ -65,7 +53,7 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 phases, float cosSun, float viewHeight, float dither) {
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 phases, CloudView view, AroundClouds around, float dither) {
   // Towards the sun: first through the point's own density, then through samples at distances that grow
   // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says.
   float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
@@ -79,16 +67,18 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 
   }
   CloudDepths depths = cloudDepthsAt(uLightVolume, q);
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
-  float phase = mix(phases.x, phases.y, point.ice / point.extinction);
-  vec2 shares = cloudSkyShares(depths);
+  float ice = point.ice / point.extinction;
+  float phase = mix(phases.x, phases.y, ice);
+  CloudScattering scattered =
+      cloudScattering(depths, view, ice, point.cover / point.extinction, phase, uKeyDirection.z);
 #ifdef WELKIN_SHEETS
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
   float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
-  return keyLightAt(q.z, p) * (sheets * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z)) +
-         skyAbove(q.z) * vec3(uBandSky[band]) * shares.x + uGroundLight * shares.y;
+  return keyLightAt(q.z, p) * (sheets * scattered.sun) +
+         lightFromAbove(around, q.z) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #else
-  return keyLightAt(q.z, p) * cloudSunSource(depths, phase, cosSun, viewHeight, uKeyDirection.z) +
-         skyAbove(q.z) * shares.x + uGroundLight * shares.y;
+  return keyLightAt(q.z, p) * scattered.sun +
+         lightFromAbove(around, q.z) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #endif
 }
 
@@ -120,7 +110,7 @@ void meetSplats(float distanceM, inout MarchState state) {
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
 // free path on: most of what is seen lies there, and the light changes fastest.
-void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, vec2 dither,
+void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, AroundClouds around, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
   t += max(uStepNearM, uStepShare * t) * (0.02 + dither.x);
@@ -196,7 +186,8 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     skinStep *= 2.0;
     float through = exp(-point.extinction * stepM);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, detail, phases, cosSun, dir.z, dither.y);
+    state.luminance += share * cloudSource(band, p, q, point, detail, phases,
+                                           CloudView(cosSun, dir.z, -log(state.transmittance), t), around, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
@@ -244,6 +235,7 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, vec2 phases, float cosSun) {
 
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
+  AroundClouds around = aroundClouds(dir);
   vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
                      mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
 #ifdef WELKIN_SHEETS
@@ -274,7 +266,7 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
 #define WELKIN_MARCH(p, band, up)                            \
   stretch = bandStretch(vec2(uPieces[p]), up, dir.z);        \
   stretch.y = min(stretch.y, endM);                          \
-  marchBand(band, stretch, dir, pixelRad, phases, cosSun, dither, state);
+  marchBand(band, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
 #define WELKIN_MARCH_DOWN(p, band) WELKIN_MARCH(p, band, false)
 #define WELKIN_MARCH_UP(p, band) WELKIN_MARCH(p, band, true)
 #ifdef WELKIN_SPLATS
@@ -299,11 +291,11 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
 #define WELKIN_MARCH_DOWN(i)                                \
   stretch = bandStretch(vec2(uBands[i]), false, dir.z);     \
   stretch.y = min(stretch.y, endM);                         \
-  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
 #define WELKIN_MARCH_UP(i)                                  \
   stretch = bandStretch(vec2(uBands[i]), true, dir.z);      \
   stretch.y = min(stretch.y, endM);                         \
-  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
   WELKIN_EACH_BAND_DOWN(WELKIN_MARCH_DOWN)
   WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
 #ifdef WELKIN_SPLATS

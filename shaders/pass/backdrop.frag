@@ -27,6 +27,8 @@ layout(location = 0) out vec4 outColor;
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
+#define WELKIN_AIR_SHADOWS
+#include "lib/air_shadows.glsl"
 #endif
 
 float groundSunlight(vec2 q) {

@@ -7,6 +7,8 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/cloud_light_fit.glsl"
+#include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
@@ -17,6 +19,8 @@
 #endif
 #include "lib/dither.glsl"
 #include "lib/march.glsl"
+#define WELKIN_AIR_SHADOWS
+#include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) { return 1.0; }  // of no ground
 
@@ -40,6 +44,7 @@ void main() {
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
   vec2 at = floor(px);
   vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
+  airDither = dither.x;
   CloudRay ray = marchClouds(dir, groundDistance(dir), uPixelRad, dither);
   vec3 color = vec3(0.0);
   float depthM = ray.depthM;
@@ -52,7 +57,7 @@ void main() {
 #endif
   if (hidden > 0.0001) {
     vec3 inscatter, through;
-    aerial(dir, ray.depthM, inscatter, through);
+    aerialShaded(dir, ray.depthM, inscatter, through);
     color += ray.luminance * through + inscatter * hidden;
   }
   outCloud = vec4(color, ray.transmittance);

@@ -9,6 +9,8 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/cloud_light_fit.glsl"
+#include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
@@ -22,6 +24,8 @@
 #endif
 #include "lib/dither.glsl"
 #include "lib/march.glsl"
+#define WELKIN_AIR_SHADOWS
+#include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) {
   float sun = exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0)));
@@ -53,6 +57,7 @@ void main() {
   // Two dithers that know nothing of each other, along the ray and towards the sun: related, they would draw contour lines.
   vec2 at = floor(px);
   vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
+  airDither = dither.x;
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
 #ifdef WELKIN_TRANSMITTANCE
@@ -65,13 +70,13 @@ void main() {
   color += ray.sheets;
   if (ray.hidden > 0.0001) {
     vec3 inscatter, through;
-    aerial(dir, ray.depthM, inscatter, through);
+    aerialShaded(dir, ray.depthM, inscatter, through);
     color += ray.luminance * through + inscatter * ray.hidden;
   }
 #else
   if (ray.transmittance < 0.9999) {
     vec3 inscatter, through;
-    aerial(dir, ray.depthM, inscatter, through);
+    aerialShaded(dir, ray.depthM, inscatter, through);
     color += ray.luminance * through + inscatter * (1.0 - ray.transmittance);
   }
 #endif

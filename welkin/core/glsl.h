@@ -20,6 +20,7 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -37,7 +38,7 @@ namespace welkin::glsl {
 using glm::abs, glm::acos, glm::asin, glm::cos, glm::sin, glm::tan, glm::inversesqrt, glm::reflect;
 using glm::clamp, glm::cross, glm::dot, glm::exp, glm::exp2, glm::floor, glm::fract, glm::length, glm::log,
     glm::log2;
-using glm::ivec2, glm::ivec3, glm::vec2, glm::vec3, glm::vec4, glm::mat3;
+using glm::ivec2, glm::ivec3, glm::vec2, glm::vec3, glm::vec4, glm::mat3, glm::mat4;
 using glm::max, glm::min, glm::mix, glm::mod, glm::normalize, glm::pow, glm::sign, glm::smoothstep, glm::sqrt,
     glm::step;
 inline float atan(float y, float x) {

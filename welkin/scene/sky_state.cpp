@@ -56,15 +56,42 @@ std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s) {
   return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS)};
 }
 
+// Fills in below and belowHigh: the air that clouds see beneath them, of which they shade a share, and the
+// ground through it.
+void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const sky::LightMoments& highAir,
+                       float cover, AmbientLight& a) {
+  // The mean way through a layer of the air of light from all sides is as long as that at this cosine.
+  constexpr double kMeanCosine = 0.6;
+  const double ground = s.atmosphere->groundAltitudeM();
+  const glm::vec3 here = s.atmosphere->transmittanceToSpace(ground, kMeanCosine);
+  const auto through = [&](double altitudeM) {
+    return here / glm::max(s.atmosphere->transmittanceToSpace(altitudeM, kMeanCosine), glm::vec3(1e-6f));
+  };
+  const auto hemisphere = [](const glm::vec3& luminance) {  // the lower one, of one luminance
+    const auto pi = static_cast<float>(kPi);
+    return sky::LightMoments{2.0f * pi * luminance, {glm::vec3(0.0f), glm::vec3(0.0f), -pi * luminance}};
+  };
+  const glm::vec3 low = through(ground + ClearSkyKey::kLowM),
+                  high = through(std::max(ClearSkyKey::kHighM, ground + 1000.0));
+  const sky::LightMoments shade = cover * (hemisphere((1.0f - low) * a.haze) + -1.0f * lowAir);
+  a.below = lowAir + shade + hemisphere(low * a.ground);
+  a.belowHigh = highAir + shade + hemisphere(high * a.ground);
+}
+
 AmbientLight ambientLight(const SkyState& s) {
   AmbientLight a;
   const sky::Atmosphere& atmosphere = *s.atmosphere;
   const float pi = static_cast<float>(kPi);
   const ClearSkyKey &before = s.clearSky[0], &after = s.clearSky[1];
   const float w = static_cast<float>((s.secondsAfter - before.atS) / ClearSkyKey::kKeyS);
-  const glm::vec3 skyOnGround = glm::mix(before.ground, after.ground, w);
+  const auto now = [&](const sky::LightMoments& x, const sky::LightMoments& y) {
+    return (1.0f - w) * x + w * y;
+  };
+  a.above = now(before.ground, after.ground);
+  a.aboveHigh = now(before.high, after.high);
+  const glm::vec3 skyOnGround = a.above.along[2];
   a.skyLow = skyOnGround / pi;
-  a.skyHigh = glm::mix(before.high, after.high, w) / pi;
+  a.skyHigh = a.aboveHigh.along[2] / pi;
   const float through = static_cast<float>(diffuseTransmittance(s.scene, s.weather, *s.clouds));
   // What falls on the clouds has not yet passed the air beneath their tops: the highest that are thick enough
   // to scatter it all.
@@ -94,6 +121,7 @@ AmbientLight ambientLight(const SkyState& s) {
   a.clearAir = beneath ? 1.0f - cover : 1.0f;
   a.haze = 0.75f * a.skyOnGround / pi +
            0.25f * a.ground;  // the sky fills most of what a droplet near the ground sees brightly
+  addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), cover, a);
   return a;
 }
 
@@ -131,17 +159,25 @@ SkyLights lightsAt(const Scene& scene, double secondsAfter) {
 void ClearSkyKeyInProgress::start(const SkyState& state, double atS) {
   atmosphere_ = state.atmosphere;
   lights_ = lightsAt(state.scene, atS).lights;
-  key_ = {.atS = atS};
+  key_ = {};
+  key_.atS = atS;
   done_ = 0;
 }
 
 void ClearSkyKeyInProgress::computeTo(int part) {
-  constexpr int kRings = sky::Atmosphere::kSkyRings;
-  const double ground = atmosphere_->groundAltitudeM(), high = std::max(10000.0, ground + 1000.0);
+  constexpr int kSky = sky::Atmosphere::kSkyRings, kAir = sky::Atmosphere::kAirRings;
+  const double ground = atmosphere_->groundAltitudeM(), low = ground + ClearSkyKey::kLowM,
+               high = std::max(ClearSkyKey::kHighM, ground + 1000.0);
   for (; done_ < std::min(part, kParts); ++done_) {
-    const bool low = done_ < kRings;
-    (low ? key_.ground : key_.high) +=
-        atmosphere_->skyIlluminanceOfRing(low ? ground : high, lights_, done_ % kRings);
+    const bool isHigh = done_ >= kSky + kAir;
+    const int ring = isHigh ? done_ - kSky - kAir : done_;
+    if (ring < kSky) {
+      sky::LightMoments& sum = isHigh ? key_.high : key_.ground;
+      sum = sum + atmosphere_->skyLightOfRing(isHigh ? high : ground, lights_, ring);
+    } else {
+      sky::LightMoments& sum = isHigh ? key_.highAir : key_.lowAir;
+      sum = sum + atmosphere_->airLightOfRing(isHigh ? high : low, lights_, ring - kSky);
+    }
   }
 }
 

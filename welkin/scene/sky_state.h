@@ -26,16 +26,21 @@ struct AmbientLight {
   glm::vec3 skyHigh{0};      // the same at 10 km
   glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
   glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
-  float clearAir = 1.0f;     // share of the air beneath the clouds that the sun reaches
-  glm::vec3 haze{0};         // mean luminance about the eye where it does not, cd/m2
+  // What comes from above the horizon at the ground and at 10 km, and from below it at 2 km and at 10 km, air
+  // and ground.
+  sky::LightMoments above, aboveHigh, below, belowHigh;
+  float clearAir = 1.0f;  // share of the air beneath the clouds that the sun reaches
+  glm::vec3 haze{0};      // mean luminance about the eye where it does not, cd/m2
 };
 
-// Illuminance by the clear sky alone of a plane facing up, at a key instant: whole multiples of kKeyS. In
-// between it is blended, as it takes milliseconds to compute: linearly, within half a hundredth at dusk.
+// Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it
+// takes milliseconds to compute: linearly, within half a hundredth at dusk.
 struct ClearSkyKey {
   static constexpr double kKeyS = 30.0;
+  static constexpr double kLowM = 2000.0, kHighM = 10000.0;  // above the ground, and above the sea
   double atS = 0.0;
-  glm::vec3 ground{0}, high{0};  // at the ground, at 10 km; lux
+  sky::LightMoments ground, high;     // of the sky above the horizon at the ground, at kHighM
+  sky::LightMoments lowAir, highAir;  // of the air below it at kLowM, at kHighM
 
   bool operator==(const ClearSkyKey&) const = default;
 };
@@ -87,7 +92,7 @@ void moveSky(SkyState& state, double secondsAfter);
 // A key instant in portions, for frame loops: the same key whatever the portions.
 class ClearSkyKeyInProgress {
  public:
-  static constexpr int kParts = 2 * sky::Atmosphere::kSkyRings;
+  static constexpr int kParts = 2 * (sky::Atmosphere::kSkyRings + sky::Atmosphere::kAirRings);
   void start(const SkyState& state, double atS);   // of which it keeps the atmosphere
   void computeTo(int part);                        // the first `part` of them
   const ClearSkyKey& key() const { return key_; }  // complete after computeTo(kParts)

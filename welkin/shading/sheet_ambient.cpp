@@ -163,7 +163,10 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     const Descent::AtGround before = volumesAlone.atGround();
     const glm::vec3 least(1e-30f);
     a.skyOnGround = state.ambient.skyOnGround * (ground.sky / glm::max(before.sky, least));
-    a.ground = state.ambient.ground * (ground.light / glm::max(before.light, least));
+    const glm::vec3 share = ground.light / glm::max(before.light, least);
+    a.ground = state.ambient.ground * share;
+    a.below = share.y * state.ambient.below;
+    a.belowHigh = share.y * state.ambient.belowHigh;
     a.clearAir = state.ambient.clearAir;
   }
   for (std::size_t i = 0; i < sheets.size(); ++i)

@@ -42,18 +42,28 @@ class Refill {
   std::size_t count_ = 0;
 };
 
+void putMoments(Refill& u, std::string_view owner, const sky::LightMoments& light) {
+  static constexpr const char* kColours[] = {".red", ".green", ".blue"};
+  for (int c = 0; c < 3; ++c)
+    u.put(owner, kColours[c],
+          glm::vec4(light.total[c], light.along[0][c], light.along[1][c], light.along[2][c]) /
+              static_cast<float>(2.0 * kPi));
+}
+
 }  // namespace
 
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  std::vector<float> ice(field::kMaxLayers, 0.0f);
+  std::vector<float> ice(field::kMaxLayers, 0.0f), cover = ice;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
                          [&](const char* name, auto value) { u.emplace_back(layerMember(i, name), value); });
     ice[i] = scene::isIce(state.weather.layers[i].genus) ? 1.0f : 0.0f;
+    cover[i] = static_cast<float>(state.weather.layers[i].oktas / kOktas);
   }
   u.emplace_back("uLayerIce", ice);
+  u.emplace_back("uLayerCover", cover);
   return u;
 }
 
@@ -91,6 +101,10 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uSkyHigh", state.ambient.skyHigh);
   u.put("", "uSkyOnGround", state.ambient.skyOnGround);
   u.put("", "uGroundLight", state.ambient.ground);
+  putMoments(u, "uAboveLight[0]", state.ambient.above);
+  putMoments(u, "uAboveLight[1]", state.ambient.aboveHigh);
+  putMoments(u, "uBelowLight[0]", state.ambient.below);
+  putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
   u.put("", "uClearAir", state.ambient.clearAir);
   u.put("", "uHazeLuminance", state.ambient.haze);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));

@@ -104,27 +104,61 @@ glm::vec3 Atmosphere::skyLuminance(double altitudeM, glm::vec3 direction,
   return sum;
 }
 
-glm::vec3 Atmosphere::skyIlluminance(double altitudeM, std::span<const Light> lights) const {
-  vec3 sum(0.0f);
-  for (int ring = 0; ring < kSkyRings; ++ring) sum += skyIlluminanceOfRing(altitudeM, lights, ring);
+void LightMoments::add(const glm::vec3& luminance, const glm::vec3& direction, float steradians) {
+  const glm::vec3 light = steradians * luminance;
+  total += light;
+  for (int k = 0; k < 3; ++k) along[static_cast<std::size_t>(k)] += direction[k] * light;
+}
+
+LightMoments operator+(const LightMoments& a, const LightMoments& b) {
+  LightMoments sum{a.total + b.total, {}};
+  for (std::size_t k = 0; k < 3; ++k) sum.along[k] = a.along[k] + b.along[k];
   return sum;
 }
 
-glm::vec3 Atmosphere::skyIlluminanceOfRing(double altitudeM, std::span<const Light> lights, int ring) const {
-  // Midpoints in elevation, squeezed towards the horizon where luminance changes fast, and in azimuth.
-  constexpr int kAzimuths = 24;
-  const float x = (static_cast<float>(ring) + 0.5f) / kSkyRings;
+LightMoments operator*(float share, const LightMoments& m) {
+  return {share * m.total, {share * m.along[0], share * m.along[1], share * m.along[2]}};
+}
+
+namespace {
+
+// One of so many rings of a hemisphere. Midpoints in elevation, squeezed towards the horizon where luminance
+// changes fast, and in azimuth.
+template <class Luminance>
+LightMoments lightOfRing(int ring, int rings, int azimuths, float side, std::span<const Light> lights,
+                         Luminance&& luminance) {
+  const float x = (static_cast<float>(ring) + 0.5f) / static_cast<float>(rings);
   const float angle = static_cast<float>(0.5 * kPi) * x * x;
-  const float width = static_cast<float>(kPi) * x / kSkyRings;
-  const float weight = std::sin(angle) * std::cos(angle) * width * static_cast<float>(2.0 * kPi) / kAzimuths;
+  const float width = static_cast<float>(kPi) * x / static_cast<float>(rings);
+  const float steradians =
+      std::cos(angle) * width * static_cast<float>(2.0 * kPi) / static_cast<float>(azimuths);
   const vec3 zero = lights.empty() ? vec3(1, 0, 0) : vec3(lights[0].direction);
-  vec3 sum(0.0f);
-  for (int f = 0; f < kAzimuths; ++f) {
-    const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(2.0 * kPi) / kAzimuths;
-    sum +=
-        weight * skyLuminance(altitudeM, shared::atmosphereDirection(std::sin(angle), azimuth, zero), lights);
+  LightMoments sum;
+  for (int f = 0; f < azimuths; ++f) {
+    const float azimuth =
+        (static_cast<float>(f) + 0.5f) * static_cast<float>(2.0 * kPi) / static_cast<float>(azimuths);
+    const vec3 direction = shared::atmosphereDirection(side * std::sin(angle), azimuth, zero);
+    sum.add(luminance(direction), direction, steradians);
   }
   return sum;
+}
+
+}  // namespace
+
+glm::vec3 Atmosphere::skyIlluminance(double altitudeM, std::span<const Light> lights) const {
+  LightMoments sum;
+  for (int ring = 0; ring < kSkyRings; ++ring) sum = sum + skyLightOfRing(altitudeM, lights, ring);
+  return sum.along[2];
+}
+
+LightMoments Atmosphere::skyLightOfRing(double altitudeM, std::span<const Light> lights, int ring) const {
+  return lightOfRing(ring, kSkyRings, 24, 1.0f, lights,
+                     [&](const vec3& d) { return skyLuminance(altitudeM, d, lights); });
+}
+
+LightMoments Atmosphere::airLightOfRing(double altitudeM, std::span<const Light> lights, int ring) const {
+  return lightOfRing(ring, kAirRings, 12, -1.0f, lights,
+                     [&](const vec3& d) { return skyLuminance(altitudeM, d, lights); });
 }
 
 }  // namespace welkin::sky

@@ -8,6 +8,7 @@
 // weighted sum (0.2126, 0.7152, 0.0722) is the photometric value.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <span>
@@ -64,6 +65,17 @@ AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double vis
 
 // The atmosphere and the two tables that depend on nothing else. Immutable; safe to share between threads.
 // The tables are computed in the constructor by parallelFor, the same with any number of threads.
+// Light from many directions by its moments over them.
+struct LightMoments {
+  glm::vec3 total{0};                // integral of the luminance, lm/m2 for all sides of a small ball
+  std::array<glm::vec3, 3> along{};  // integrals of it times the direction's components east, north, up
+
+  void add(const glm::vec3& luminance, const glm::vec3& direction, float steradians);
+  bool operator==(const LightMoments&) const = default;
+};
+LightMoments operator+(const LightMoments& a, const LightMoments& b);
+LightMoments operator*(float share, const LightMoments& m);
+
 class Atmosphere {
  public:
   // visibilityM: meteorological optical range at the ground, Koschmieder: total extinction there is 3.912 /
@@ -89,9 +101,13 @@ class Atmosphere {
   glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, std::span<const Light> lights) const;
   // Illuminance of a horizontal plane facing up by the clear sky alone.
   glm::vec3 skyIlluminance(double altitudeM, std::span<const Light> lights) const;
-  // The part of it that comes from one of kSkyRings rings of the sky; their sum, from the first on, is all.
+  // Light of the clear sky from one of kSkyRings rings above the horizon; their sum, from the first on, is
+  // that of the upper hemisphere.
   static constexpr int kSkyRings = 24;
-  glm::vec3 skyIlluminanceOfRing(double altitudeM, std::span<const Light> lights, int ring) const;
+  LightMoments skyLightOfRing(double altitudeM, std::span<const Light> lights, int ring) const;
+  // The same of the air below the horizon, down to the ground, without the ground's own.
+  static constexpr int kAirRings = 10;
+  LightMoments airLightOfRing(double altitudeM, std::span<const Light> lights, int ring) const;
 
  private:
   AtmosphereUniforms uniforms_;

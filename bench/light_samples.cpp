@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+// Examples for tools/fit_cloud_light.py: points that eyes see in the clouds of random skies, what the shader
+// knows there, and what the reference says is scattered there.
+//
+//   light_samples OUT.f32 SKIES POINTS PATHS SEED
+//
+// Rows of kColumns float32 values are appended to OUT, POINTS from each of SKIES skies, PATHS paths each. No
+// sky of bench/truth is among them.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+#include <vector>
+
+#include "welkin/core/glsl.h"
+#include "welkin/core/parallel.h"
+#include "welkin/core/random.h"
+#include "welkin/core/units.h"
+#include "welkin/core/utc_time.h"
+#include "welkin/gpu/context.h"
+#include "welkin/optics/phase.h"
+#include "welkin/reference/cloud_source.h"
+#include "welkin/reference/directions.h"
+#include "welkin/render/cloud_textures.h"
+#include "welkin/render/light_volume_pass.h"
+#include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/scene_file.h"
+#include "welkin/shading/uniforms.h"
+
+namespace welkin {
+namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+using field::CloudLayer;
+#include "shaders/lib/clouds.glsl"
+}  // namespace shared
+
+using reference::Ray;
+using reference::unit;
+
+// What a row holds, in this order.
+enum Column {
+  kToSun,    // optical depths as the shader has them: towards the sun with its samples nearby,
+  kFromSun,  //   back,
+  kUp,       //   up and
+  kDown,     //   down
+  kToEye,    // and to the eye
+  kCosSun,
+  kViewHeight,  // sines of the elevations of the direction of view and of the sun
+  kSunHeight,
+  kIce,
+  kCover,   // of the sky by the layer, [0, 1]
+  kDirect,  // share of the sun's light that arrives straight
+  kPhase,   // of the first scattering, 1/sr
+  kSun,     // means over the paths: see CloudSourceSample
+  kAbove,
+  kBelow,
+  kPaths,
+  kGenus,
+  kSky,
+  kDistance,  // from the eye, m
+  kColumns
+};
+
+// lib/light_volume.glsl on the CPU.
+struct LightVolume {
+  shading::LightVolumeLayout layout;
+  Volume<float> texels;
+
+  float slice(float z) const {
+    float s = static_cast<float>(layout.bands[0].firstSlice);
+    for (const auto& b : layout.bands)
+      if (z >= b.baseM)
+        s = std::lerp(static_cast<float>(b.firstSlice), static_cast<float>(b.lastSlice),
+                      std::clamp((z - b.baseM) / (b.topM - b.baseM), 0.0f, 1.0f));
+    return s;
+  }
+  glm::vec4 texel(const glm::vec3& q, float s, int cascade) const {
+    const int n = static_cast<int>(layout.heightsM.size());
+    const float half = layout.kHalfM[static_cast<std::size_t>(cascade)];
+    const float c[3] = {
+        std::clamp(q.x / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(texels.nx) - 0.5f,
+        std::clamp(q.y / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(texels.ny) - 0.5f,
+        s + static_cast<float>(cascade * n)};
+    const int size[3] = {texels.nx, texels.ny, texels.nz};
+    glm::vec4 sum(0.0f);
+    for (int corner = 0; corner < 8; ++corner) {
+      float weight = 1.0f;
+      int at[3];
+      for (int k = 0; k < 3; ++k) {
+        const float low = std::floor(c[k]);
+        const bool high = (corner >> k & 1) != 0;
+        weight *= high ? c[k] - low : 1.0f - (c[k] - low);
+        at[k] = std::clamp(static_cast<int>(low) + (high ? 1 : 0), 0, size[k] - 1);
+      }
+      for (int ch = 0; ch < 4; ++ch) sum[ch] += weight * texels.at(at[0], at[1], at[2], ch);
+    }
+    return sum;
+  }
+  glm::vec4 at(const glm::vec3& q) const {
+    const float reach = std::max(std::abs(q.x), std::abs(q.y));
+    const int cascade = reach < layout.kHalfM[0] * 0.96f ? 0 : (reach < layout.kHalfM[1] * 0.96f ? 1 : 2);
+    const float s = slice(q.z);
+    const glm::vec4 own = texel(q, s, cascade);
+    const float outward = reach / layout.kHalfM[static_cast<std::size_t>(cascade)];
+    if (cascade == 2 || outward <= 0.77f) return own;
+    return glm::mix(own, texel(q, s, cascade + 1), (outward - 0.77f) / 0.19f);
+  }
+};
+
+// The field as the shader asks for it.
+struct Clouds {
+  const field::CloudField& field;
+  float earthRadius;
+
+  float extinction(const glm::vec3& q, float detailShare) const {
+    const shared::sampler2D placement{&field.noise().placement, shared::Wrap::kRepeat, shared::Wrap::kRepeat};
+    const shared::sampler3D shape{&field.noise().shape, shared::Wrap::kRepeat},
+        detail{&field.noise().detail, shared::Wrap::kRepeat};
+    float sum = 0.0f;
+    for (const field::CloudLayer& layer : field.layers()) {
+      if (q.z <= layer.baseM || q.z >= layer.topM) continue;
+      float clear = 0.0f;
+      sum += shared::cloudExtinctionFrom(layer, shape, detail, q, shared::cloudSurface(layer, placement, q),
+                                         detailShare, clear);
+    }
+    return sum;
+  }
+  glm::vec3 position(const glm::dvec3& p) const { return shared::cloudPosition(glm::vec3(p), earthRadius); }
+  // Along [0, end) of a ray, up to `enough`, by steps that grow.
+  double depth(const Ray& ray, double end, double enough) const {
+    double sum = 0.0;
+    for (double t = 0.0, step = 2.0; t < end && sum < enough; t += step, step = std::min(step * 1.15, 60.0)) {
+      const double length = std::min(step, end - t);
+      sum += length * static_cast<double>(extinction(position(ray.at(t + 0.5 * length)), 1.0f));
+    }
+    return sum;
+  }
+};
+
+scene::Scene randomScene(Random& random) {
+  static constexpr std::array kGenera = {
+      weather::Genus::kCumulus,       weather::Genus::kCumulus,      weather::Genus::kStratocumulus,
+      weather::Genus::kStratocumulus, weather::Genus::kStratus,      weather::Genus::kNimbostratus,
+      weather::Genus::kCumulonimbus,  weather::Genus::kCumulonimbus, weather::Genus::kAltocumulus,
+      weather::Genus::kAltostratus,   weather::Genus::kCirrus,       weather::Genus::kCirrostratus};
+  scene::Scene s;
+  s.seed = 1000 + static_cast<std::int64_t>(random.below(1000000));
+  s.time = parseUtcTime("2026-06-21T10:00:00Z");
+  s.technique = scene::Technique::kVolume;
+  weather::Layer layer = weather::typicalLayer(kGenera[random.below(kGenera.size())], 45.0);
+  const bool deck = layer.genus == weather::Genus::kStratus || layer.genus == weather::Genus::kNimbostratus ||
+                    layer.genus == weather::Genus::kAltostratus ||
+                    layer.genus == weather::Genus::kCirrostratus;
+  layer.oktas = deck ? 6.0 + random.below(3)
+                     : 1.0 + random.below(layer.genus == weather::Genus::kStratocumulus ? 8 : 6);
+  // Depth and thickness as they vary from day to day.
+  const double depth = (layer.topM - layer.baseM) * std::exp2(1.4 * unit(random) - 0.7);
+  layer.topM = layer.baseM + depth;
+  layer.extinctionPerM *= std::exp2(1.4 * unit(random) - 0.7);
+  s.layers = {layer};
+  return s;
+}
+
+glm::dvec3 uniformDirection(Random& random) {
+  const double z = 2.0 * unit(random) - 1.0, phi = 2.0 * kPi * unit(random), r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+int run(int argc, char** argv) {
+  if (argc != 6) {
+    fmt::print(stderr, "usage: light_samples OUT.f32 SKIES POINTS PATHS SEED\n");
+    return 2;
+  }
+  const int skies = std::atoi(argv[2]), points = std::atoi(argv[3]), paths = std::atoi(argv[4]);
+  const auto seed = static_cast<std::uint64_t>(std::atoll(argv[5]));
+  gpu::Context context;
+  render::LightVolumePass pass;
+  for (int sky = 0; sky < skies; ++sky) {
+    Random random(hashOf(seed, sky));
+    const scene::Scene scene = randomScene(random);
+    scene::SkyState state = scene::buildSky(scene, 0.0);
+    const weather::Layer& layer = state.weather.layers[0];
+    // Half of the suns are low.
+    const double sine =
+        unit(random) < 0.5 ? 0.03 + 0.97 * unit(random) : std::sin(radians(2.0 + 28.0 * unit(random)));
+    const double azimuth = 2.0 * kPi * unit(random);
+    const glm::dvec3 sun(std::sqrt(1.0 - sine * sine) * std::cos(azimuth),
+                         std::sqrt(1.0 - sine * sine) * std::sin(azimuth), sine);
+    state.lights[0].direction = glm::vec3(sun);
+    LightVolume volume{shading::lightVolumeLayout(state), {}};
+    const render::CloudTextures textures(state.clouds->sharedNoise());
+    pass.draw(state, volume.layout, textures);
+    volume.texels = pass.volume().read();
+
+    const std::vector<bool> ice{scene::isIce(layer.genus)};
+    const reference::CloudMedium medium(*state.clouds, {0}, ice);
+    const optics::DropletPhase fit =
+        optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));
+    const auto droplets = reference::PhaseSampler::tabulated(
+        [&](double c) { return static_cast<double>(optics::phaseDroplet(static_cast<float>(c), fit)); });
+    const auto crystals = reference::PhaseSampler::tabulated([](double c) {
+      const auto x = static_cast<float>(c);
+      return 0.55 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.92f)) +
+             0.45 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.55f));
+    });
+    const reference::CloudSource source(medium, sun, droplets, crystals);
+    const Clouds clouds{*state.clouds, static_cast<float>(state.clouds->earthRadiusM())};
+    const double earthTop = medium.grid()->highM();
+
+    std::vector<float> rows(static_cast<std::size_t>(points) * kColumns, NAN);
+    parallelFor(static_cast<std::size_t>(points), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Random r(hashOf(seed, sky, i, 7));
+        for (int attempt = 0; attempt < 200; ++attempt) {
+          // Half of the eyes on the ground, the others up to above the clouds; a third of the looks near the
+          // sun.
+          const double eye = unit(r) < 0.5 ? 2.0 : unit(r) * 1.3 * earthTop;
+          glm::dvec3 view = uniformDirection(r);
+          if (unit(r) < 0.33) view = reference::turned(sun, 1.0 - 0.3 * unit(r), 2.0 * kPi * unit(r));
+          // Most look near the horizon, as cameras do.
+          else if (unit(r) < 0.8)
+            view = glm::normalize(glm::dvec3(view.x, view.y, 0.35 * view.z));
+          const Ray ray{{0.0, 0.0, eye}, view};
+          const double ground = medium.earth().toGround(ray, 40e3);
+          const auto hit = medium.collide(ray, std::min(ground, 40e3), r);
+          if (!hit) continue;
+          const glm::dvec3 p = ray.at(hit->t);
+          const glm::vec3 q = clouds.position(p);
+          float* row = &rows[i * kColumns];
+          const auto pixelRad = static_cast<float>(4e-4 * std::exp2(4.0 * unit(r)));
+          const float detail =
+              std::clamp(2.0f - 6.0f * static_cast<float>(hit->t) * pixelRad / 40.0f, 0.0f, 1.0f);
+          // As cloudSource() in lib/march.glsl has it.
+          constexpr int kSamples = 4;  // the qualities have 2 to 5
+          const float reach = 200.0f, extinction = clouds.extinction(q, detail);
+          if (extinction <= 0.0f) continue;
+          float done = reach / std::pow(kSamples + 1.0f, 3.0f), near = extinction * done;
+          const auto dither = static_cast<float>(unit(r));
+          const glm::vec3 key(sun);
+          for (int k = 1; k <= kSamples; ++k) {
+            const float x = (static_cast<float>(k) + 1.0f) / (kSamples + 1.0f), to = reach * x * x * x;
+            const float f = dither + 0.382f * static_cast<float>(k);
+            near += (to - done) *
+                    clouds.extinction(q + key * std::lerp(done, to, 0.3f + 0.4f * (f - std::floor(f))),
+                                      k == 1 ? detail : 0.0f);
+            done = to;
+          }
+          const glm::vec4 here = volume.at(q);
+          row[kToSun] = near + volume.at(q + key * done).x;
+          row[kFromSun] = here.z;
+          row[kUp] = here.y;
+          row[kDown] = here.w;
+          row[kToEye] = static_cast<float>(clouds.depth({p, -view}, hit->t, 8.0));
+          row[kCosSun] = static_cast<float>(glm::dot(view, sun));
+          row[kViewHeight] = static_cast<float>(view.z);
+          row[kSunHeight] = static_cast<float>(sun.z);
+          row[kIce] = hit->ice ? 1.0f : 0.0f;
+          row[kCover] = static_cast<float>(layer.oktas / kOktas);
+          row[kDirect] = static_cast<float>(std::exp(-clouds.depth({p, sun}, 60e3, 30.0)));
+          row[kPhase] = static_cast<float>((hit->ice ? crystals : droplets).density(glm::dot(view, sun)));
+          double lit = 0.0;
+          int above = 0, below = 0;
+          for (int k = 0; k < paths; ++k) {
+            const reference::CloudSourceSample s = source.trace(p, view, hit->ice, r);
+            lit += s.sun;
+            above += s.toSky ? 1 : 0;
+            below += s.toGround ? 1 : 0;
+          }
+          row[kSun] = static_cast<float>(lit / paths);
+          row[kAbove] = static_cast<float>(above) / static_cast<float>(paths);
+          row[kBelow] = static_cast<float>(below) / static_cast<float>(paths);
+          row[kPaths] = static_cast<float>(paths);
+          row[kGenus] = static_cast<float>(layer.genus);
+          row[kSky] = static_cast<float>(seed * 100000 + static_cast<std::uint64_t>(sky));
+          row[kDistance] = static_cast<float>(hit->t);
+          break;
+        }
+      }
+    });
+    std::ofstream out(argv[1], std::ios::binary | std::ios::app);
+    for (int i = 0; i < points; ++i) {
+      const float* row = &rows[static_cast<std::size_t>(i) * kColumns];
+      if (!std::isnan(row[kBelow])) out.write(reinterpret_cast<const char*>(row), kColumns * sizeof(float));
+    }
+    fmt::print("{} of {}: {} {} oktas, sun {:.3f}\n", sky + 1, skies,
+               kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)], layer.oktas, sine);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace welkin
+
+int main(int argc, char** argv) {
+  return welkin::run(argc, argv);
+}

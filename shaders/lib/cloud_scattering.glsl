@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that volumes scatter: the closed forms of lib/cloud_light.glsl, corrected by a small network that was fitted to the reference
+// renderer (tools/fit_cloud_light.py). A slab is what the closed forms take a cloud for; how much more or less light comes out of its
+// sides, from between clouds and towards the eye, the network has learnt from points in the clouds of random skies. It sees what the
+// march knows anyhow. Needs lib/cloud_light.glsl and
+// lib/cloud_light_fit.glsl before it.
+
+// How a point is seen.
+struct CloudView {
+  float cosSun;     // of the angle between the direction of view and the sun
+  float height;     // sine of the elevation of the direction of view
+  float toEye;      // optical depth
+  float distanceM;
+};
+
+// What it does with light: of the sun, scattered radiance per unit extinction and unit illuminance, 1/sr; and the shares of light from
+// above (x) and from below (y), which sum to 1, as clouds absorb nothing.
+struct CloudScattering {
+  float sun;
+  vec2 shares;
+};
+
+WELKIN_CONST float kMostCorrection = 3.0f;  // of logarithms
+
+// ice: the share of it. cover: of the sky by the layer, [0, 1]. phase: the first scattering's, 1/sr. sunHeight: sine of its elevation.
+WELKIN_FN CloudScattering cloudScattering(CloudDepths d, CloudView view, float ice, float cover, float phase, float sunHeight) {
+  vec2 shares = cloudSkyShares(d);
+  float sun = cloudSunSource(d, phase, view.cosSun, view.height, sunHeight);
+#if defined(WELKIN_SINGLE_SCATTERING) || defined(WELKIN_OCTAVES_OF_SCATTERING)
+  return CloudScattering(sun, shares);
+#else
+  float direct = phase * exp(-d.toSun);
+  float others = max(sun - direct, 0.0f) + 1e-5f;
+  vec2 logs = cloudLightFit(
+      log(1.0f + vec4(d.toSun, d.fromSun, d.up, d.down)) / 3.0f,
+      vec4(log(1.0f + view.toEye) / 3.0f, view.cosSun, view.height, sunHeight),
+      vec4(sqrt(max(0.5f - 0.5f * view.cosSun, 0.0f)), ice, log(1.0f + 0.001f * view.distanceM) / 3.0f, cover));
+  float above = shares.x / (shares.x + shares.y * exp(clamp(-logs.y, -kMostCorrection, kMostCorrection)));
+  return CloudScattering(direct + others * exp(clamp(logs.x, -kMostCorrection, kMostCorrection)), vec2(above, 1.0f - above));
+#endif
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light scattered at points of clouds against the sky tracer's pictures of them.
+#include "welkin/reference/cloud_source.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "tests/testing/skies.h"
+#include "welkin/core/units.h"
+#include "welkin/optics/phase.h"
+#include "welkin/reference/directions.h"
+#include "welkin/reference/sky_tracer.h"
+#include "welkin/scene/cloud_shapes.h"
+
+namespace welkin::reference {
+namespace {
+
+using weather::Genus;
+
+constexpr double kLux = 1000.0;
+
+scene::SkyState airlessSky(Genus genus) {
+  scene::Scene s = testing::cloudyScene(35.0, {genus}, 5.0);
+  s.ground.albedo = {0.0, 0.0, 0.0};
+  scene::SkyState state = scene::buildSky(s, 0.0);
+  sky::AtmosphereUniforms u = state.atmosphere->uniforms();
+  u.rayleighScattering = u.aerosolExtinction = u.aerosolScattering = u.ozoneAbsorption = u.airglow =
+      glm::vec3(0.0f);
+  state.atmosphere = std::make_shared<sky::Atmosphere>(u);
+  state.lights[0].illuminance = glm::vec3(static_cast<float>(kLux));
+  state.lights[1].illuminance = glm::vec3(0.0f);
+  state.scene.output.sunDisc = false;
+  return state;
+}
+
+// What eyes see of clouds without air is what is scattered where their looks end.
+TEST(CloudSource, IsWhatTheTracerSees) {
+  for (const Genus genus : {Genus::kCumulus, Genus::kCirrus}) {
+    const scene::SkyState state = airlessSky(genus);
+    const SkyTracer tracer(state, {});
+    const CloudMedium medium(*state.clouds, {0}, {scene::isIce(genus)});
+    const optics::DropletPhase fit =
+        optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));
+    const auto droplets = PhaseSampler::tabulated(
+        [&](double c) { return static_cast<double>(optics::phaseDroplet(static_cast<float>(c), fit)); });
+    const auto ice = PhaseSampler::tabulated([](double c) {
+      const auto x = static_cast<float>(c);
+      return 0.55 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.92f)) +
+             0.45 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.55f));
+    });
+    const glm::dvec3 sun(state.lights[0].direction);
+    const CloudSource source(medium, sun, droplets, ice);
+    constexpr int kPaths = 40000;
+    double a = 0.0, a2 = 0.0, b = 0.0, b2 = 0.0, single = 0.0;
+    Random random(5);
+    for (int i = 0; i < kPaths; ++i) {
+      const glm::dvec3 way =
+          glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, 0.2 + unit(random)));
+      const double seen = tracer.traceDirection(way, static_cast<std::uint64_t>(i)).luminance.x / kLux;
+      a += seen, a2 += seen * seen;
+      const Ray ray{{0.0, 0.0, state.scene.camera.eyeM}, way};
+      const auto hit = medium.collide(ray, 400e3, random);
+      if (!hit) continue;
+      const glm::dvec3 p = ray.at(hit->t);
+      const double first = (hit->ice ? ice : droplets).density(glm::dot(way, sun)) *
+                           medium.transmittance({p, sun}, 400e3, random);
+      const double there = first + source.trace(p, way, hit->ice, random).sun;
+      single += first;
+      b += there, b2 += there * there;
+    }
+    const double error = std::sqrt((a2 + b2 - (a * a + b * b) / kPaths)) / kPaths;
+    EXPECT_NEAR(a / kPaths, b / kPaths, 4.0 * error);
+    EXPECT_LT(error, 0.08 * a / kPaths);
+    EXPECT_LT(single, 0.9 * b);
+  }
+}
+
+}  // namespace
+}  // namespace welkin::reference

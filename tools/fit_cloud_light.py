@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Fits the network of shaders/lib/cloud_light_fit.glsl to examples written by bench/light_samples.
+
+    light_samples EXAMPLES.f32 900 300 8 1
+    tools/fit_cloud_light.py EXAMPLES.f32... [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
+
+Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
+used. The network: twelve numbers, two layers of sixteen x / (1 + |x|), two numbers: the logarithm of a factor of
+the light scattered more than once, and of the odds of light from above. Least squares of relative errors, by Adam
+(D. P. Kingma and J. Ba 2015, "Adam: A Method for Stochastic Optimization"). The examples are noisy means over a
+few paths; their noise has no bias, and evens out.
+"""
+import argparse
+
+import numpy as np
+
+COLUMNS = ("to_sun from_sun up down to_eye cos_sun view_height sun_height ice cover direct phase sun above below "
+           "paths genus sky distance").split()
+SIMILARITY = 1 - 0.86  # the constants of shaders/lib/cloud_light.glsl
+WIDTH = 16
+LEAST = 0.01           # 1/sr: what errors are relative to where clouds are dark
+OUTLIER = 20.0         # times the expected light: where a mean of a few paths is cut
+
+
+def read(files):
+    rows = np.concatenate([np.fromfile(f, np.float32).reshape(-1, len(COLUMNS)) for f in files])
+    return {name: rows[:, i].astype(np.float64) for i, name in enumerate(COLUMNS)}
+
+
+def henyey_greenstein(c, g):
+    return (1 - g * g) / (4 * np.pi * np.maximum(1 + g * g - 2 * g * c, 1e-7) ** 1.5)
+
+
+def closed_form(d):
+    """cloudSunSource() without the first scattering, and cloudSkyShares().x."""
+    to_sun, from_sun = d["to_sun"], d["from_sun"]
+    direct = np.exp(-to_sun)
+    as_layer = np.clip(d["sun_height"], 0.1, 1)
+    mu = np.clip(d["up"] / np.maximum(to_sun, 1e-3), as_layer, 1)
+    facing = d["view_height"] + (d["cos_sun"] - d["view_height"]) * (mu - as_layer) / np.maximum(1 - as_layer, 1e-3)
+    depth = SIMILARITY * mu * to_sun
+    total = depth + SIMILARITY * mu * from_sun
+    here, through = np.exp(-depth / mu), np.exp(-total / mu)
+    transmitted = (2 / 3 + mu + (2 / 3 - mu) * through) / (4 / 3 + total)
+    fluence = 3 * mu * transmitted * (total - depth + 2 / 3) - 2 * mu * through + 3 * mu * mu * (through - here)
+    flux = mu * (transmitted - here)
+    diffuse = 1.06 * np.maximum(fluence + 3 * 0.594 * flux * facing, 0) / (4 * np.pi)
+    diffuse *= 1 - np.exp(-0.32 * mu * (to_sun + from_sun))
+    forward = 1.62 * henyey_greenstein(d["cos_sun"], 0.593) * np.maximum(here - direct, 0)
+    up, down = SIMILARITY * d["up"], SIMILARITY * d["down"]
+    return np.maximum(forward + diffuse, 0) + 1e-5, (down + 2 / 3) / (4 / 3 + up + down)
+
+
+def inputs(d):
+    """As cloudScattering() of shaders/lib/cloud_scattering.glsl has them."""
+    def log(x):
+        return np.log1p(np.maximum(x, 0)) / 3
+    return np.stack([log(d["to_sun"]), log(d["from_sun"]), log(d["up"]), log(d["down"]), log(d["to_eye"]), d["cos_sun"],
+                     d["view_height"], d["sun_height"], np.sqrt(np.maximum(0.5 - 0.5 * d["cos_sun"], 0)), d["ice"],
+                     log(d["distance"] / 1000), d["cover"]], 1).astype(np.float32)
+
+
+class Network:
+    def __init__(self, rng):
+        sizes = [12, WIDTH, WIDTH, 2]
+        self.weights = [rng.normal(0, a ** -0.5, (a, b)).astype(np.float32) for a, b in zip(sizes, sizes[1:])]
+        self.weights[-1] *= 0.1
+        self.biases = [np.zeros(b, np.float32) for b in sizes[1:]]
+        self.parameters = self.weights + self.biases
+        self.first = [np.zeros_like(p) for p in self.parameters]
+        self.second = [np.zeros_like(p) for p in self.parameters]
+        self.steps = 0
+
+    def __call__(self, x):
+        self.values, self.sums = [x], []
+        for i, (w, b) in enumerate(zip(self.weights, self.biases)):
+            z = self.values[-1] @ w + b
+            self.sums.append(z)
+            self.values.append(z / (1 + np.abs(z)) if i < 2 else z)
+        return self.values[-1]
+
+    def step(self, gradient, rate):
+        """Adam, after a call: gradient of the loss by the outputs."""
+        of_weights, of_biases = [], []
+        for i in (2, 1, 0):
+            of_weights.insert(0, self.values[i].T @ gradient)
+            of_biases.insert(0, gradient.sum(0))
+            if i:
+                gradient = (gradient @ self.weights[i].T) / (1 + np.abs(self.sums[i - 1])) ** 2
+        self.steps += 1
+        for p, g, m, v in zip(self.parameters, of_weights + of_biases, self.first, self.second):
+            m *= 0.9
+            m += 0.1 * g
+            v *= 0.999
+            v += 0.001 * g * g
+            p -= rate * (m / (1 - 0.9 ** self.steps)) / (np.sqrt(v / (1 - 0.999 ** self.steps)) + 1e-9)
+
+
+def predicted(network, x, sun, above):
+    out = network(x)
+    return sun * np.exp(np.clip(out[:, 0], -3, 3)), 1 / (1 + (1 / above - 1) * np.exp(-np.clip(out[:, 1], -3, 3)))
+
+
+def fit(d, rows, steps, seed=0, batch=4096, rate=8e-3):
+    rng = np.random.default_rng(seed)
+    x = inputs(d)
+    sun, above = (v.astype(np.float32) for v in closed_form(d))
+    first = np.minimum(d["direct"] * d["phase"], 2).astype(np.float32)
+    true_sun, true_above = d["sun"].astype(np.float32), d["above"].astype(np.float32)
+    network = Network(rng)
+    for step in range(steps):
+        i = rows[rng.integers(0, len(rows), batch)]
+        s, a = predicted(network, x[i], sun[i], above[i])
+        # Weights of the last step's prediction: a noisy example that happens to be dark counts no more for it.
+        error = (s - np.minimum(true_sun[i], OUTLIER * (s + LEAST))) / (s + 0.3 * first[i] + LEAST) ** 2
+        gradient = np.stack([2 * error * s, 2 * (a - true_above[i]) * a * (1 - a)], 1) / batch
+        network.step(gradient.astype(np.float32), np.float32(rate * 0.5 * (1 + np.cos(np.pi * step / steps)) + 1e-5))
+    return network
+
+
+def report(name, d, rows, network):
+    """Bias of each sky's mean: of the light of the sun, and of the share from above."""
+    sun, above = closed_form(d)
+    s, a = predicted(network, inputs(d), sun, above)
+    sky = d["sky"].astype(int)
+    rows = rows[d["cos_sun"][rows] < 0.93]  # nearer to the sun the noise is larger than the errors
+    before, after, shares, noise = [], [], [], []
+    for k in np.unique(sky[rows]):
+        i = rows[sky[rows] == k]
+        if len(i) < 60:
+            continue
+        true = d["sun"][i]
+        before.append(sun[i].mean() / true.mean() - 1)
+        after.append(s[i].mean() / true.mean() - 1)
+        noise.append(true.std() / len(i) ** 0.5 / true.mean())
+        shares.append(a[i].mean() - d["above"][i].mean())
+    print(f"{name}: {len(after)} skies, {len(rows)} points; light of the sun, mean |bias| of a sky: closed form "
+          f"{np.mean(np.abs(before)):.3f}, fit {np.mean(np.abs(after)):.3f} (noise {np.mean(noise):.3f}); mean bias "
+          f"{np.mean(before):+.3f}, {np.mean(after):+.3f}; share from above, rms {np.sqrt(np.mean(np.square(shares))):.3f}")
+
+
+def glsl(network, note):
+    def number(v):
+        text = f"{v:.4g}"
+        return text + ("f" if "." in text or "e" in text else ".0f")
+
+    def matrix(w):  # 4 inputs by 4 outputs: GLSL's columns are inputs
+        return "mat4(" + ", ".join(number(v) for v in w.ravel()) + ")"
+
+    def vector(b):
+        return "vec4(" + ", ".join(number(v) for v in b) + ")"
+
+    lines = []
+    for name, source, w, b in (("a", "x", network.weights[0], network.biases[0]),
+                               ("b", "a", network.weights[1], network.biases[1])):
+        for k in range(WIDTH // 4):
+            columns = slice(4 * k, 4 * k + 4)
+            terms = [f"{matrix(w[4 * j:4 * j + 4, columns])} * {source}{j}" for j in range(len(w) // 4)]
+            lines.append(f"  vec4 {name}{k} = " + " +\n            ".join(terms + [vector(b[columns])]) + ";")
+        lines += [f"  {name}{k} /= 1.0f + abs({name}{k});" for k in range(WIDTH // 4)]
+    out = [" + ".join([f"dot({vector(network.weights[2][4 * j:4 * j + 4, c])}, b{j})" for j in range(WIDTH // 4)] +
+                      [number(network.biases[2][c])]) for c in (0, 1)]
+    lines.append(f"  return vec2({out[0]},\n              {out[1]});")
+    body = "\n".join(lines)
+    return f"""// SPDX-License-Identifier: Apache-2.0
+// Written by tools/fit_cloud_light.py, which says what it is; {note}.
+WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2) {{
+{body}
+}}
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("examples", nargs="+")
+    parser.add_argument("--write", help="the shader to write, from all examples")
+    parser.add_argument("--steps", type=int, default=6000)
+    args = parser.parse_args()
+    d = read(args.examples)
+    every = np.arange(len(d["sun"]))
+    held_back = d["sky"].astype(int) % 6 == 0
+    skies = len(np.unique(d["sky"]))
+    network = fit(d, every[~held_back], args.steps)
+    report("seen", d, every[~held_back], network)
+    report("held back", d, every[held_back], network)
+    if args.write:
+        network = fit(d, every, args.steps)
+        with open(args.write, "w", encoding="utf-8") as out:
+            out.write(glsl(network, f"from {len(every)} points in {skies} skies"))
+
+
+if __name__ == "__main__":
+    main()
