@@ -21,11 +21,7 @@ constexpr int kMostScatterings = 20000;
 
 CloudSource::CloudSource(const CloudMedium& medium, const glm::dvec3& toSun, const PhaseSampler& droplets,
                          const PhaseSampler& ice)
-    : medium_(medium),
-      toSun_(toSun),
-      droplets_(droplets),
-      ice_(ice),
-      peak_(droplets.above(kPeakAbove)) {}
+    : medium_(medium), toSun_(toSun), droplets_(droplets), ice_(ice), peak_(droplets.above(kPeakAbove)) {}
 
 // Light that comes along a chain of peaks to p and is scattered there by the rest of the phase function, or
 // by the whole of it.

@@ -15,8 +15,9 @@ TEST(ClearSkyKey, LightBetweenKeysIsThatOfTheInstant) {
     for (const double t : {-44.0, 12.0, 45.0}) {
       const SkyState state = buildSky(s, t);
       const float exact = state.atmosphere->skyIlluminance(0.0, state.lights).y;
-      EXPECT_NEAR(state.clearSky[0].ground.total.y > 0.0f ? state.ambient.skyLow.y * 3.14159265f / exact : 0.0f,
-                  1.0f, 0.005f)
+      EXPECT_NEAR(
+          state.clearSky[0].ground.total.y > 0.0f ? state.ambient.skyLow.y * 3.14159265f / exact : 0.0f, 1.0f,
+          0.005f)
           << time << " " << t;
     }
   }
