@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <numeric>
 #include <vector>
 
 #include "welkin/core/glsl.h"
@@ -21,7 +20,7 @@
 #include "welkin/core/units.h"
 #include "welkin/core/utc_time.h"
 #include "welkin/gpu/context.h"
-#include "welkin/optics/phase.h"
+#include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/cloud_source.h"
 #include "welkin/reference/directions.h"
 #include "welkin/render/cloud_textures.h"
@@ -178,6 +177,10 @@ int run(int argc, char** argv) {
   }
   const int skies = std::atoi(argv[2]), points = std::atoi(argv[3]), paths = std::atoi(argv[4]);
   const auto seed = static_cast<std::uint64_t>(std::atoll(argv[5]));
+  if (skies < 1 || points < 1 || paths < 1) {
+    fmt::print(stderr, "light_samples: SKIES, POINTS and PATHS must be whole numbers from 1 on\n");
+    return 2;
+  }
   gpu::Context context;
   render::LightVolumePass pass;
   for (int sky = 0; sky < skies; ++sky) {
@@ -199,15 +202,9 @@ int run(int argc, char** argv) {
 
     const std::vector<bool> ice{scene::isIce(layer.genus)};
     const reference::CloudMedium medium(*state.clouds, {0}, ice);
-    const optics::DropletPhase fit =
-        optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));
-    const auto droplets = reference::PhaseSampler::tabulated(
-        [&](double c) { return static_cast<double>(optics::phaseDroplet(static_cast<float>(c), fit)); });
-    const auto crystals = reference::PhaseSampler::tabulated([](double c) {
-      const auto x = static_cast<float>(c);
-      return 0.55 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.92f)) +
-             0.45 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.55f));
-    });
+    const auto droplets =
+        reference::dropletPhase(scene::dropletDiameterUm(state.weather), reference::DropletModel::kFit);
+    const auto crystals = reference::icePhase();
     const reference::CloudSource source(medium, sun, droplets, crystals);
     const Clouds clouds{*state.clouds, static_cast<float>(state.clouds->earthRadiusM())};
     const double earthTop = medium.grid()->highM();
@@ -286,6 +283,10 @@ int run(int argc, char** argv) {
     for (int i = 0; i < points; ++i) {
       const float* row = &rows[static_cast<std::size_t>(i) * kColumns];
       if (!std::isnan(row[kBelow])) out.write(reinterpret_cast<const char*>(row), kColumns * sizeof(float));
+    }
+    if (!out.flush()) {
+      fmt::print(stderr, "light_samples: {} could not be written\n", argv[1]);
+      return 1;
     }
     fmt::print("{} of {}: {} {} oktas, sun {:.3f}\n", sky + 1, skies,
                kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)], layer.oktas, sine);

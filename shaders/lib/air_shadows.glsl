@@ -3,18 +3,18 @@
 //
 // Needs lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
 
+#define WELKIN_AIR_SHADOWS
+
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
 
 const int kAirSamples = 4;
 // Light that clouds turn by a few degrees only lights the air behind them as if it had not been turned: half of what droplets scatter.
 const float kAirShadow = 0.5;
 
-// The share of what the air of [0, distanceM] would add in the sun that it does add.
-float litAir(vec3 dir, float distanceM) {
+// The share of what the air of [0, distanceM] would add in the sun that it does add. through: what it lets through.
+float litAir(vec3 dir, float distanceM, vec3 through) {
   if (uBandCount == 0 || uLineTowardsSun < 0.5) return uClearAir;
-  vec3 inscatter, through;
-  atmosphereAerial(uAtmosphere, uAerialInscatter, uAerialTransmittance, uEyeM + uGroundAltitudeM, dir, uKeyDirection, distanceM,
-                   inscatter, through);
+  float topM = uBands[uBandCount - 1].y;
   // Places are spread as light is scattered: evenly in what has been let through.
   float absorbed = 1.0 - through.y;
   float perM = -log(max(through.y, 1e-4)) / max(distanceM, 1.0);
@@ -23,15 +23,15 @@ float litAir(vec3 dir, float distanceM) {
     float share = (float(i) + airDither) / float(kAirSamples);
     float t = absorbed > 1e-3 ? -log(max(1.0 - share * absorbed, 1e-4)) / perM : share * distanceM;
     vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
-    float above = uBands[uBandCount - 1].y;
-    lit += q.z >= above ? 1.0 : exp(-kAirShadow * cloudDepthToSun(uLightVolume, q));
+    lit += q.z >= topM ? 1.0 : exp(-kAirShadow * cloudDepthToSun(uLightVolume, q));
   }
-  return lit / float(kAirSamples);
+  return uAirUnderSheets * lit / float(kAirSamples);
 }
 
 // As aerial(), with these shadows.
 void aerialShaded(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
-  aerialLit(dir, distanceM, litAir(dir, distanceM), inscatter, through);
+  aerialLit(dir, distanceM, inscatter, through);
+  inscatter = shadedAir(inscatter, through, litAir(dir, distanceM, through));
 }
 
 // What they take from the clear sky behind all clouds, for an eye beneath their tops.
@@ -40,8 +40,7 @@ vec3 shadowsInSky(vec3 dir) {
   float topM = uBands[uBandCount - 1].y;
   if (uEyeM >= topM) return vec3(0.0);
   float distanceM = sphereCrossings(topM, dir.z).y;
-  vec3 lit, shaded, through;
-  aerialLit(dir, distanceM, 1.0, lit, through);
-  aerialShaded(dir, distanceM, shaded, through);
-  return lit - shaded;
+  vec3 lit, through;
+  aerialLit(dir, distanceM, lit, through);
+  return lit - shadedAir(lit, through, litAir(dir, distanceM, through));
 }

@@ -27,7 +27,7 @@ float ballClearance(vec3 q) {
   return cell.y > 0.0 ? -1.0 : cell.z;
 }
 
-// Adds what they are at q.
+// Adds what they are at q. Clouds of balls stand alone: they have no cover.
 void addBalls(vec3 q, inout CloudPoint point) {
   vec3 cell = ballCell(q);
   int first = int(cell.x), count = int(cell.y);

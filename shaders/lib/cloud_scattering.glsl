@@ -2,8 +2,7 @@
 // Light that volumes scatter: the closed forms of lib/cloud_light.glsl, corrected by a small network that was fitted to the reference
 // renderer (tools/fit_cloud_light.py). A slab is what the closed forms take a cloud for; how much more or less light comes out of its
 // sides, from between clouds and towards the eye, the network has learnt from points in the clouds of random skies. It sees what the
-// march knows anyhow. Needs lib/cloud_light.glsl and
-// lib/cloud_light_fit.glsl before it.
+// march knows anyhow. Needs lib/cloud_light.glsl and lib/cloud_light_fit.glsl before it.
 
 // How a point is seen.
 struct CloudView {

@@ -25,6 +25,7 @@ uniform sampler2D uSkyView;
 uniform sampler3D uAerialInscatter;
 uniform sampler3D uAerialTransmittance;
 uniform float uClearAir;          // share of the lower air that the sun reaches
+uniform float uAirUnderSheets;    // of what thin sheets alone leave, the share of it
 uniform vec3 uHazeLuminance;      // mean luminance about the eye where it does not: what hazy air there tends to
 
 // The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
@@ -34,15 +35,19 @@ vec3 keyLightAt(float heightM, vec3 p) {
   return vec3(textureLod(uKeyLight, vec2(heightM / uKeyLightTopM, 0.5 + 0.5 * (sine - uKeyDirection.z) / uKeyLightReach), 0.0));
 }
 
-// What the air between the eye and a distance adds, and what it lets through, where the sun reaches a share of it.
-void aerialLit(vec3 dir, float distanceM, float lit, out vec3 inscatter, out vec3 through) {
+// What the air between the eye and a distance adds in the sun, and what it lets through.
+void aerialLit(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   atmosphereAerial(uAtmosphere, uAerialInscatter, uAerialTransmittance, uEyeM + uGroundAltitudeM, dir, uKeyDirection,
                    distanceM, inscatter, through);
-  // Air in the shade of clouds is lit from all sides alike.
-  inscatter = mix((1.0 - through) * uHazeLuminance, inscatter, lit);
 }
+
+// What it adds where the sun reaches a share of it: air in the shade of clouds is lit from all sides alike.
+vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return mix((1.0 - through) * uHazeLuminance, inscatter, lit); }
+
+// The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
-  aerialLit(dir, distanceM, uClearAir, inscatter, through);
+  aerialLit(dir, distanceM, inscatter, through);
+  inscatter = shadedAir(inscatter, through, uClearAir);
 }
 
 // Mean radiance of what is not the key light, from above (sky) and below (ground) at a height.

@@ -27,7 +27,6 @@ layout(location = 0) out vec4 outColor;
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
-#define WELKIN_AIR_SHADOWS
 #include "lib/air_shadows.glsl"
 #endif
 

@@ -24,7 +24,6 @@
 #endif
 #include "lib/dither.glsl"
 #include "lib/march.glsl"
-#define WELKIN_AIR_SHADOWS
 #include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) {

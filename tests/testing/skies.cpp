@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/testing/skies.h"
 
+#include <memory>
+
 #include "welkin/sky/ephemeris.h"
 
 namespace welkin::testing {
@@ -68,6 +70,19 @@ scene::Scene projected(scene::Scene s, scene::Projection projection, int width, 
 scene::Scene fromHeight(scene::Scene s, double eyeM) {
   s.camera.eyeM = eyeM;
   return s;
+}
+
+scene::SkyState airlessSky(scene::Scene s, double sunLux) {
+  s.ground.albedo = {0.0, 0.0, 0.0};
+  s.output.sunDisc = false;
+  scene::SkyState state = scene::buildSky(s, 0.0);
+  sky::AtmosphereUniforms u = state.atmosphere->uniforms();
+  u.rayleighScattering = u.aerosolExtinction = u.aerosolScattering = u.ozoneAbsorption = u.airglow =
+      glm::vec3(0.0f);
+  state.atmosphere = std::make_shared<sky::Atmosphere>(u);
+  state.lights[0].illuminance = glm::vec3(static_cast<float>(sunLux));
+  state.lights[1].illuminance = glm::vec3(0.0f);
+  return state;
 }
 
 }  // namespace welkin::testing

@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "welkin/scene/scene.h"
+#include "welkin/scene/sky_state.h"
 
 namespace welkin::testing {
 
@@ -28,5 +29,8 @@ scene::Scene sized(scene::Scene s, int width, int height);
 scene::Scene looking(scene::Scene s, double headingDeg, double pitchDeg, double fovDeg = 70.0);
 scene::Scene projected(scene::Scene s, scene::Projection projection, int width, int height);
 scene::Scene fromHeight(scene::Scene s, double eyeM);
+
+// The sky of a scene without air, discs and light of the ground, in a sun of so many lux.
+scene::SkyState airlessSky(scene::Scene s, double sunLux);
 
 }  // namespace welkin::testing

@@ -2,47 +2,38 @@
 #include "welkin/reference/cloud_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "welkin/core/units.h"
+#include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/directions.h"
 
 namespace welkin::reference {
 namespace {
 
-// As in sky_tracer.cpp, which says why: droplets' forward peak is sampled from the sun's side.
-constexpr double kPeakAbove = 0.3;
-constexpr std::size_t kLongestChain = 24;
 constexpr int kMostScatterings = 20000;
 
 }  // namespace
 
 CloudSource::CloudSource(const CloudMedium& medium, const glm::dvec3& toSun, const PhaseSampler& droplets,
                          const PhaseSampler& ice)
-    : medium_(medium), toSun_(toSun), droplets_(droplets), ice_(ice), peak_(droplets.above(kPeakAbove)) {}
+    : medium_(medium), toSun_(toSun), droplets_(droplets), ice_(ice), peak_(dropletPeak(droplets)) {}
 
 // Light that comes along a chain of peaks to p and is scattered there by the rest of the phase function, or
 // by the whole of it.
 double CloudSource::byPeaks(const glm::dvec3& p, const glm::dvec3& view, bool isIce, double whole,
                             Random& random) const {
-  std::array<glm::dvec3, kLongestChain> ways;
   const double share = peak_.integral();
   if (!(unit(random) < share)) return 0.0;
-  std::size_t n = 0;
-  glm::dvec3 way = toSun_;
-  do {
-    way = turned(way, peak_.sampleCosine(unit(random)), 2.0 * kPi * unit(random));
-    ways[n++] = way;
-  } while (n < kLongestChain && unit(random) < share);
-  const double c = glm::dot(view, way);
+  PeakChain chain = drawPeaks(toSun_, peak_, random);
+  const double c = glm::dot(view, chain.ways[chain.count - 1]);
   double lit = isIce ? ice_.density(c) : droplets_.density(c) - (1.0 - whole) * share * peak_.density(c);
-  lit /= n < kLongestChain ? 1.0 - share : 1.0;
+  lit *= chain.weight / share;
   if (lit == 0.0) return 0.0;
   glm::dvec3 at = p;
-  while (n > 0) {
-    const Ray ray{at, ways[--n]};
+  while (chain.count > 0) {
+    const Ray ray{at, chain.ways[--chain.count]};
     const auto collision = medium_.collide(ray, CloudMedium::kToGround, random);
     if (!collision || collision->ice) return 0.0;
     at = ray.at(collision->t);
@@ -60,7 +51,6 @@ CloudSourceSample CloudSource::trace(const glm::dvec3& p, const glm::dvec3& view
     const auto collision = medium_.collide(ray, CloudMedium::kToGround, random);
     if (!collision) {
       (medium_.earth().toGround(ray, -1.0) >= 0.0 ? sample.toGround : sample.toSky) = true;
-      sample.way = ray.way;
       break;
     }
     const glm::dvec3 at = ray.at(collision->t);

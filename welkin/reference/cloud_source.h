@@ -19,7 +19,6 @@ struct CloudSourceSample {
                        // that has been scattered once only
   bool toSky = false;  // the path leaves upwards: the mean is the share of uniform light from above
   bool toGround = false;
-  glm::dvec3 way{0.0};  // the path's last
 };
 
 class CloudSource {

@@ -10,7 +10,6 @@
 
 #include "welkin/core/error.h"
 #include "welkin/core/glsl.h"
-#include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
 #include "welkin/reference/cloud_medium.h"
 #include "welkin/reference/directions.h"
@@ -33,31 +32,14 @@ using field::CloudLayer;
 
 // A path whose throughput is below the one goes on with a chance, and with the other.
 constexpr double kRouletteBelow = 0.1, kRouletteTo = 0.3;
-// What droplets scatter forward beyond this, 1/sr, is their peak: see gather().
-constexpr double kPeakAbove = 0.3;
 // How often air and ground look for light by way of clouds.
 constexpr double kChainOfOthers = 0.25;
-constexpr std::size_t kLongestChain = 24;
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
 }
 double largest(const glm::dvec3& v) {
   return std::max({v.x, v.y, v.z});
-}
-
-PhaseSampler dropletPhase(const scene::SkyState& state, DropletModel model) {
-  const double diameter = scene::dropletDiameterUm(state.weather);
-  if (model == DropletModel::kMie)
-    return PhaseSampler::tabulated([=](double c) { return optics::phaseMieDroplet(c, diameter); });
-  const optics::DropletPhase fit = optics::dropletPhase(static_cast<float>(diameter));
-  return PhaseSampler::tabulated([=](double c) { return optics::phaseDroplet(static_cast<float>(c), fit); });
-}
-
-// Ice as shaders/lib/march.glsl has it.
-double icePhase(double c) {
-  const auto x = static_cast<float>(c);
-  return 0.55 * optics::phaseHenyeyGreenstein(x, 0.92f) + 0.45 * optics::phaseHenyeyGreenstein(x, 0.55f);
 }
 
 // The layers that are volumes. Throws for what this renderer does not trace.
@@ -105,12 +87,12 @@ struct SkyTracer::Impl {
         balls(tracedMetaballs(s)),
         air(s.atmosphere->uniforms()),
         lights(s, air, earth),
-        droplets(dropletPhase(s, settings.droplets)),
-        ice(PhaseSampler::tabulated(icePhase)),
+        droplets(dropletPhase(scene::dropletDiameterUm(s.weather), settings.droplets)),
+        ice(icePhase()),
         molecules(
             PhaseSampler::tabulated([](double c) { return optics::phaseRayleigh(static_cast<float>(c)); })),
         isotropic(PhaseSampler::henyeyGreenstein(0.0)),
-        peak(droplets.above(kPeakAbove)),
+        peak(dropletPeak(droplets)),
         airglow(s.atmosphere->uniforms().airglow),
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM) {}
 
@@ -123,7 +105,7 @@ struct SkyTracer::Impl {
   Air air;
   SkyLights lights;
   PhaseSampler droplets, ice, molecules, isotropic;
-  PhaseSampler peak;  // of the droplets, by itself; its integral is its share of all they scatter
+  PhaseSampler peak;  // of the droplets: see gather()
   glm::dvec3 airglow;
   double airglowHeight;
 
@@ -242,21 +224,12 @@ template <class Value>
 void SkyTracer::Impl::gatherByPeaks(const Path& path, const glm::dvec3& p, const LightSample& light,
                                     double chance, Value&& value, Work& work) const {
   Random& random = work.random;
-  // From the sun's side; of n with the chance of peak.integral()^(n - 1) (1 - peak.integral()).
-  std::array<glm::dvec3, kLongestChain> ways;
-  const double share = peak.integral();
-  std::size_t n = 0;
-  glm::dvec3 way = light.direction;
-  do {
-    way = turned(way, peak.sampleCosine(unit(random)), 2.0 * kPi * unit(random));
-    ways[n++] = way;
-  } while (n < kLongestChain && unit(random) < share);
-  const double left = n < kLongestChain ? 1.0 - share : 1.0;
-  glm::dvec3 lit = path.throughput * value(way) * share / (chance * left);
+  PeakChain chain = drawPeaks(light.direction, peak, random);
+  glm::dvec3 lit = path.throughput * value(chain.ways[chain.count - 1]) * chain.weight / chance;
   if (sum(lit) == 0.0) return;
   glm::dvec3 at = p;
-  while (n > 0) {
-    const Ray ray{at, ways[--n]};
+  while (chain.count > 0) {
+    const Ray ray{at, chain.ways[--chain.count]};
     const auto collision = collide(ray, random);
     if (!collision || collision->phase != &droplets) return;  // no others have that peak
     lit *= collision->albedo * throughAir(ray, collision->t);

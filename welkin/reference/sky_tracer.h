@@ -12,15 +12,11 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
-#include <string_view>
 
-#include "welkin/core/params.h"
+#include "welkin/reference/cloud_phases.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::reference {
-
-// How droplets scatter: as the GPU has it, or by Mie's theory, with fogbow and glory.
-enum class DropletModel { kFit, kMie };
 
 struct SkySettings {
   std::uint64_t seed = 1;
@@ -57,8 +53,3 @@ class SkyTracer {
 };
 
 }  // namespace welkin::reference
-
-namespace welkin {
-template <>
-inline constexpr auto kEnumNames<reference::DropletModel> = std::array<std::string_view, 2>{"fit", "mie"};
-}  // namespace welkin

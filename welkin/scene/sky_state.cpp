@@ -56,6 +56,11 @@ std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s) {
   return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS)};
 }
 
+// Where the light high up is looked for.
+double highAltitude(double groundAltitudeM) {
+  return std::max(ClearSkyKey::kHighM, groundAltitudeM + 1000.0);
+}
+
 // Fills in below and belowHigh: the air that clouds see beneath them, of which they shade a share, and the
 // ground through it.
 void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const sky::LightMoments& highAir,
@@ -71,8 +76,7 @@ void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const
     const auto pi = static_cast<float>(kPi);
     return sky::LightMoments{2.0f * pi * luminance, {glm::vec3(0.0f), glm::vec3(0.0f), -pi * luminance}};
   };
-  const glm::vec3 low = through(ground + ClearSkyKey::kLowM),
-                  high = through(std::max(ClearSkyKey::kHighM, ground + 1000.0));
+  const glm::vec3 low = through(ground + ClearSkyKey::kLowM), high = through(highAltitude(ground));
   const sky::LightMoments shade = cover * (hemisphere((1.0f - low) * a.haze) + -1.0f * lowAir);
   a.below = lowAir + shade + hemisphere(low * a.ground);
   a.belowHigh = highAir + shade + hemisphere(high * a.ground);
@@ -167,7 +171,7 @@ void ClearSkyKeyInProgress::start(const SkyState& state, double atS) {
 void ClearSkyKeyInProgress::computeTo(int part) {
   constexpr int kSky = sky::Atmosphere::kSkyRings, kAir = sky::Atmosphere::kAirRings;
   const double ground = atmosphere_->groundAltitudeM(), low = ground + ClearSkyKey::kLowM,
-               high = std::max(ClearSkyKey::kHighM, ground + 1000.0);
+               high = highAltitude(ground);
   for (; done_ < std::min(part, kParts); ++done_) {
     const bool isHigh = done_ >= kSky + kAir;
     const int ring = isHigh ? done_ - kSky - kAir : done_;

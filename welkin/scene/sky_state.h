@@ -29,8 +29,9 @@ struct AmbientLight {
   // What comes from above the horizon at the ground and at 10 km, and from below it at 2 km and at 10 km, air
   // and ground.
   sky::LightMoments above, aboveHigh, below, belowHigh;
-  float clearAir = 1.0f;  // share of the air beneath the clouds that the sun reaches
-  glm::vec3 haze{0};      // mean luminance about the eye where it does not, cd/m2
+  float clearAir = 1.0f;        // share of the air beneath the clouds that the sun reaches
+  float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
+  glm::vec3 haze{0};            // mean luminance about the eye where it does not, cd/m2
 };
 
 // Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it

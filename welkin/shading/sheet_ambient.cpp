@@ -158,7 +158,7 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
   const Descent::AtGround ground = all.atGround();
   a.skyOnGround = ground.sky;
   a.ground = ground.light;
-  a.clearAir = 1.0f;
+  a.clearAir = a.airUnderSheets = 1.0f;
   if (!volumes.empty()) {
     const Descent::AtGround before = volumesAlone.atGround();
     const glm::vec3 least(1e-30f);
@@ -170,7 +170,8 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     a.clearAir = state.ambient.clearAir;
   }
   for (std::size_t i = 0; i < sheets.size(); ++i)
-    if (sheets[i].heightM > state.scene.camera.eyeM) a.clearAir *= out.sunThrough[i];
+    if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];
+  a.clearAir *= a.airUnderSheets;
   a.haze = 0.75f * a.skyOnGround / kPiF + 0.25f * a.ground;
 }
 

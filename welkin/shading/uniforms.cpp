@@ -106,6 +106,7 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   putMoments(u, "uBelowLight[0]", state.ambient.below);
   putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
   u.put("", "uClearAir", state.ambient.clearAir);
+  u.put("", "uAirUnderSheets", state.ambient.airUnderSheets);
   u.put("", "uHazeLuminance", state.ambient.haze);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 

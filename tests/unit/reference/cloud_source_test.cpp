@@ -9,7 +9,6 @@
 
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
-#include "welkin/optics/phase.h"
 #include "welkin/reference/directions.h"
 #include "welkin/reference/sky_tracer.h"
 #include "welkin/scene/cloud_shapes.h"
@@ -21,35 +20,14 @@ using weather::Genus;
 
 constexpr double kLux = 1000.0;
 
-scene::SkyState airlessSky(Genus genus) {
-  scene::Scene s = testing::cloudyScene(35.0, {genus}, 5.0);
-  s.ground.albedo = {0.0, 0.0, 0.0};
-  scene::SkyState state = scene::buildSky(s, 0.0);
-  sky::AtmosphereUniforms u = state.atmosphere->uniforms();
-  u.rayleighScattering = u.aerosolExtinction = u.aerosolScattering = u.ozoneAbsorption = u.airglow =
-      glm::vec3(0.0f);
-  state.atmosphere = std::make_shared<sky::Atmosphere>(u);
-  state.lights[0].illuminance = glm::vec3(static_cast<float>(kLux));
-  state.lights[1].illuminance = glm::vec3(0.0f);
-  state.scene.output.sunDisc = false;
-  return state;
-}
-
 // What eyes see of clouds without air is what is scattered where their looks end.
 TEST(CloudSource, IsWhatTheTracerSees) {
   for (const Genus genus : {Genus::kCumulus, Genus::kCirrus}) {
-    const scene::SkyState state = airlessSky(genus);
+    const scene::SkyState state = testing::airlessSky(testing::cloudyScene(35.0, {genus}, 5.0), kLux);
     const SkyTracer tracer(state, {});
     const CloudMedium medium(*state.clouds, {0}, {scene::isIce(genus)});
-    const optics::DropletPhase fit =
-        optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));
-    const auto droplets = PhaseSampler::tabulated(
-        [&](double c) { return static_cast<double>(optics::phaseDroplet(static_cast<float>(c), fit)); });
-    const auto ice = PhaseSampler::tabulated([](double c) {
-      const auto x = static_cast<float>(c);
-      return 0.55 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.92f)) +
-             0.45 * static_cast<double>(optics::phaseHenyeyGreenstein(x, 0.55f));
-    });
+    const auto droplets = dropletPhase(scene::dropletDiameterUm(state.weather), DropletModel::kFit);
+    const auto ice = icePhase();
     const glm::dvec3 sun(state.lights[0].direction);
     const CloudSource source(medium, sun, droplets, ice);
     constexpr int kPaths = 40000;

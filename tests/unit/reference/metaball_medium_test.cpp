@@ -135,20 +135,7 @@ double luminanceOf(const glm::dvec3& c) {
   return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
-// A sky without air over a black ground, lit by so much sun.
 constexpr double kSunLux = 1000.0;
-scene::SkyState emptySky(scene::Scene s) {
-  s.ground.albedo = {0.0, 0.0, 0.0};
-  s.output.sunDisc = false;
-  scene::SkyState state = scene::buildSky(s, 0.0);
-  sky::AtmosphereUniforms u = state.atmosphere->uniforms();
-  u.rayleighScattering = u.aerosolExtinction = u.aerosolScattering = u.ozoneAbsorption = u.airglow =
-      glm::vec3(0.0f);
-  state.atmosphere = std::make_shared<sky::Atmosphere>(u);
-  state.lights[0].illuminance = glm::vec3(static_cast<float>(kSunLux));
-  state.lights[1].illuminance = glm::vec3(0.0f);
-  return state;
-}
 
 // A ball so thin that once is all that light is scattered, by each phase function.
 TEST(SkyTracer, AThinBallScattersOnce) {
@@ -163,7 +150,7 @@ TEST(SkyTracer, AThinBallScattersOnce) {
     cloud.phase = phase;
     cloud.albedo = kAlbedo;
     s.metaballs = {cloud};
-    const scene::SkyState state = emptySky(s);
+    const scene::SkyState state = testing::airlessSky(s, kSunLux);
     const SkyTracer tracer(state, {});
     const glm::dvec3 way = glm::normalize(glm::dvec3(0.0, 3000.0, 2000.0 - s.camera.eyeM));
     const auto cosine = static_cast<float>(glm::dot(way, glm::dvec3(state.lights[0].direction)));
@@ -192,7 +179,7 @@ TEST(SkyTracer, ABallVanishesInUniformLight) {
                  folder.cloud({{{0.0, 0.0, 0.0}, 400.0, 0.02}}, {500.0, 3500.0, 2400.0})};
   s.metaballs[1].phase = scene::MetaballPhase::kRayleigh;
   s.ground.albedo = {1.0, 1.0, 1.0};
-  scene::SkyState state = emptySky(s);
+  scene::SkyState state = testing::airlessSky(s, kSunLux);
   state.scene.ground.albedo = {1.0, 1.0, 1.0};
   for (sky::Light& light : state.lights) light.illuminance = glm::vec3(0.0f);
   sky::AtmosphereUniforms u = state.atmosphere->uniforms();

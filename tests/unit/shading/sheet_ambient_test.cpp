@@ -139,6 +139,7 @@ TEST_F(SheetAmbientTest, SheetsAboveDimTheSunForThoseBeneath) {
   EXPECT_LT(light.sheets[0].sun, 0.6f);
   EXPECT_GT(luminanceOf(light.sheets[0].sky), luminanceOf(light.sheets[1].sky));
   EXPECT_FLOAT_EQ(light.ambient.clearAir, light.sunThrough[0] * light.sunThrough[1]);
+  EXPECT_EQ(light.ambient.airUnderSheets, light.ambient.clearAir);
 }
 
 // Snow sends light back to the clouds, which send it down again.

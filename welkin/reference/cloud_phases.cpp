@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/reference/cloud_phases.h"
+
+#include "welkin/core/units.h"
+#include "welkin/optics/mie_phase.h"
+#include "welkin/optics/phase.h"
+#include "welkin/reference/directions.h"
+
+namespace welkin::reference {
+namespace {
+
+constexpr double kPeakAbove = 0.3;  // 1/sr
+
+}  // namespace
+
+PhaseSampler dropletPhase(double diameterUm, DropletModel model) {
+  if (model == DropletModel::kMie)
+    return PhaseSampler::tabulated([=](double c) { return optics::phaseMieDroplet(c, diameterUm); });
+  const optics::DropletPhase fit = optics::dropletPhase(static_cast<float>(diameterUm));
+  return PhaseSampler::tabulated([=](double c) { return optics::phaseDroplet(static_cast<float>(c), fit); });
+}
+
+PhaseSampler icePhase() {
+  return PhaseSampler::tabulated([](double c) {
+    const auto x = static_cast<float>(c);
+    return 0.55 * optics::phaseHenyeyGreenstein(x, 0.92f) + 0.45 * optics::phaseHenyeyGreenstein(x, 0.55f);
+  });
+}
+
+PhaseSampler dropletPeak(const PhaseSampler& droplets) {
+  return droplets.above(kPeakAbove);
+}
+
+PeakChain drawPeaks(const glm::dvec3& toLight, const PhaseSampler& peak, Random& random) {
+  PeakChain chain;
+  const double share = peak.integral();
+  glm::dvec3 way = toLight;
+  do {
+    way = turned(way, peak.sampleCosine(unit(random)), 2.0 * kPi * unit(random));
+    chain.ways[chain.count++] = way;
+  } while (chain.count < PeakChain::kLongest && unit(random) < share);
+  chain.weight = share / (chain.count < PeakChain::kLongest ? 1.0 - share : 1.0);
+  return chain;
+}
+
+}  // namespace welkin::reference

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// How clouds scatter, as samplers; and the forward peak of droplets, which is looked for from the light's
+// side.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <string_view>
+
+#include "welkin/core/params.h"
+#include "welkin/core/random.h"
+#include "welkin/reference/phase_sampler.h"
+
+namespace welkin::reference {
+
+// How droplets scatter: as the GPU has it, or by Mie's theory, with fogbow and glory.
+enum class DropletModel { kFit, kMie };
+
+PhaseSampler dropletPhase(double diameterUm, DropletModel model);
+PhaseSampler icePhase();  // as shaders/lib/march.glsl has it
+
+// The part of the droplets' phase function that is large, by itself; its integral is its share of all they
+// scatter. What it leaves is nowhere above 0.3 / sr.
+PhaseSampler dropletPeak(const PhaseSampler& droplets);
+
+// Scatterings by the peak one after the other, drawn from the light's side; sky_tracer.cpp says what for. Of
+// `count` with the chance of s^(count - 1) (1 - s), where s is the peak's integral.
+struct PeakChain {
+  static constexpr std::size_t kLongest = 24;
+  std::array<glm::dvec3, kLongest> ways;  // towards the light, the last scattering's first
+  std::size_t count = 0;                  // at least 1
+  double weight = 0.0;  // of light along it: what peaks scatter over the chance of the chain
+};
+PeakChain drawPeaks(const glm::dvec3& toLight, const PhaseSampler& peak, Random& random);
+
+}  // namespace welkin::reference
+
+namespace welkin {
+template <>
+inline constexpr auto kEnumNames<reference::DropletModel> = std::array<std::string_view, 2>{"fit", "mie"};
+}  // namespace welkin
