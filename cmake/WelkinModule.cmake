@@ -13,6 +13,36 @@ target_compile_options(welkin_settings INTERFACE
   $<BUILD_INTERFACE:$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>>
   $<BUILD_INTERFACE:$<$<BOOL:${WELKIN_WARNINGS_AS_ERRORS}>:-Werror>>)
 
+# What nearly every source includes can be parsed once a build instead of once a file. That hides a forgotten #include: a build that is to
+# find those of a kind leaves it out.
+set(WELKIN_PRECOMPILE "" CACHE STRING "Sources that share precompiled headers: LIBRARY, PROGRAM, TEST, several or none")
+
+# welkin_precompile(<target> LIBRARY|PROGRAM|TEST) lets the target use them where they are wanted.
+function(welkin_precompile target kind)
+  if(NOT kind IN_LIST WELKIN_PRECOMPILE)
+    return()
+  endif()
+  string(TOLOWER "welkin_${kind}_headers" owner)
+  if(NOT TARGET ${owner})
+    find_package(glm REQUIRED)
+    find_package(Threads REQUIRED)
+    file(GENERATE OUTPUT "${PROJECT_BINARY_DIR}/${owner}.cpp" CONTENT "")
+    add_library(${owner} OBJECT "${PROJECT_BINARY_DIR}/${owner}.cpp")
+    target_link_libraries(${owner} PRIVATE welkin_settings glm::glm Threads::Threads)
+    target_precompile_headers(${owner} PRIVATE
+      <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <string> <string_view> <vector>
+      <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp>)
+    if(kind STREQUAL "LIBRARY")
+      set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    elseif(kind STREQUAL "TEST")
+      find_package(GTest REQUIRED)
+      target_link_libraries(${owner} PRIVATE GTest::gtest)
+      target_precompile_headers(${owner} PRIVATE <gtest/gtest.h>)
+    endif()
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()
+
 # welkin_module(<folder> SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
 # makes the static library welkin_<folder>, known to others as welkin::<folder>.
 function(welkin_module folder)
@@ -28,6 +58,7 @@ function(welkin_module folder)
     PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC_LIBS}
     PRIVATE $<BUILD_INTERFACE:welkin_settings> ${ARG_PRIVATE_LIBS})
   target_compile_features(${target} PUBLIC cxx_std_20)
+  welkin_precompile(${target} LIBRARY)
   install(TARGETS ${target} EXPORT welkin-targets)
 endfunction()
 
@@ -39,5 +70,6 @@ function(welkin_unit_test folder)
   target_link_libraries(test_${folder} PRIVATE welkin::${folder} ${ARG_LIBS} welkin_settings GTest::gtest_main)
   target_compile_definitions(test_${folder} PRIVATE
     WELKIN_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data")
+  welkin_precompile(test_${folder} TEST)
   gtest_discover_tests(test_${folder} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}/" PROPERTIES LABELS unit TIMEOUT 300)
 endfunction()

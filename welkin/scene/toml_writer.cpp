@@ -7,7 +7,7 @@
 namespace welkin::scene::detail {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string tomlString(const std::string& text) {
   std::ostringstream s;
   s << toml::value<std::string>(text);
   return s.str();
@@ -32,7 +32,7 @@ void TomlWriter::value(const ParamInfo& info, glm::dvec3& x) {
   line(info, "[" + numberText(x.x) + ", " + numberText(x.y) + ", " + numberText(x.z) + "]");
 }
 void TomlWriter::value(const ParamInfo& info, std::string& x) {
-  line(info, quoted(x));
+  line(info, tomlString(x));
 }
 void TomlWriter::value(const ParamInfo& info, UtcTime& x) {
   line(info, formatUtcTime(x));
@@ -41,10 +41,10 @@ void TomlWriter::value(const ParamInfo& info, std::optional<double>& x) {
   if (x) line(info, numberText(*x));
 }
 void TomlWriter::value(const ParamInfo& info, std::optional<std::string>& x) {
-  if (x) line(info, quoted(*x));
+  if (x) line(info, tomlString(*x));
 }
 void TomlWriter::choice(const ParamInfo& info, std::span<const std::string_view> names, int& x) {
-  line(info, quoted(std::string(names[static_cast<std::size_t>(x)])));
+  line(info, tomlString(std::string(names[static_cast<std::size_t>(x)])));
 }
 
 bool TomlWriter::beginGroup(const ParamInfo& info) {
