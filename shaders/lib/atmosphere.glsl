@@ -2,6 +2,9 @@
 // The clear sky: medium, table parametrisations, and the ray-march integrals that fill the tables.
 // After S. Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique" (tables, multiple scattering) and
 // E. Bruneton and F. Neyret 2008, "Precomputed Atmospheric Scattering" (transmittance parametrisation).
+// Beyond Hillaire, light scattered more than once remembers where it came from. What coarse haze scatters into its narrow peak goes on as a
+// second, wider beam (delta scaling: J. H. Joseph, W. J. Wiscombe and J. A. Weinman 1976, "The Delta-Eddington Approximation for Radiative
+// Flux Transfer"); what is left has a mean and two moments along the line to the light.
 //
 // Needs phase.glsl before it. Shared by C++ and GLSL, see welkin/core/glsl.h.
 // Frame: at the eye, z up, x and y horizontal. h: altitude above mean sea level in metres; mu: cosine of the angle from the
@@ -13,7 +16,8 @@
 // tables; these constants must agree with them.
 WELKIN_CONST float kTransmittanceWidth = 256.0f;   // by direction
 WELKIN_CONST float kTransmittanceHeight = 64.0f;   // by altitude
-WELKIN_CONST float kMultipleScatteringSize = 32.0f;
+WELKIN_CONST float kMultipleScatteringSize = 32.0f;  // of each of the moments, one beside another along y
+WELKIN_CONST float kMultipleScatteringMoments = 3.0f;
 WELKIN_CONST float kSkyViewWidth = 192.0f;         // by azimuth
 WELKIN_CONST float kSkyViewHeight = 128.0f;        // by elevation, lower half under the horizon
 WELKIN_CONST float kAerialAzimuths = 48.0f;
@@ -107,8 +111,9 @@ WELKIN_FN float atmosphereExponentialStep(float h0, float h1, float scale, float
   return dt * exp(-h0 / scale) * mean;
 }
 
-// Optical depth from h to space along mu. The ray must miss the ground.
-WELKIN_FN vec3 atmosphereOpticalDepth(Atmosphere a, float h, float mu) {
+// Optical depth from h to space along mu (rgb), and the way through aerosol in metres of that at the ground (a). The ray must miss the
+// ground.
+WELKIN_FN vec4 atmosphereOpticalDepth(Atmosphere a, float h, float mu) {
   const int kSteps = 16;
   float tEnd = atmosphereDistanceToSphere(a, h, mu, a.topAltitudeM);
   float tLow = clamp(-(a.seaRadiusM + h) * mu, 0.0f, tEnd);  // the lowest point; steps are short around it
@@ -132,10 +137,11 @@ WELKIN_FN vec3 atmosphereOpticalDepth(Atmosphere a, float h, float mu) {
       h0 = h1;
     }
   }
-  return a.rayleighScattering * rayleigh + a.aerosolExtinction * aerosol + a.ozoneAbsorption * ozone;
+  return vec4(a.rayleighScattering * rayleigh + a.aerosolExtinction * aerosol + a.ozoneAbsorption * ozone, aerosol);
 }
 
-// ---- Transmittance table: x by direction from the zenith to the horizon, y by altitude ----------------------------------------
+// ---- Transmittance table: x by direction from the zenith to the horizon, y by altitude; in alpha the way through aerosol in
+// metres of that at the ground, over its scale height ---------------------------------------------------------------------------
 
 WELKIN_FN vec2 atmosphereTransmittanceUv(Atmosphere a, float h, float mu) {
   float full = sqrt(atmosphereSquareDifference(a, a.topAltitudeM, a.groundAltitudeM));
@@ -161,24 +167,39 @@ WELKIN_FN vec2 atmosphereTransmittanceParameters(Atmosphere a, float x, float y)
   return vec2(h, mu);
 }
 
-// Transmittance from h to space towards a light at mu; fades to 0 while the light's disc sinks behind the earth.
-WELKIN_FN vec3 atmosphereTransmittance(Atmosphere a, sampler2D transmittanceLut, float altitudeM, float mu) {
+// What arrives at h of a light at mu: straight from it, and of what coarse haze has turned by little on the way. Both fade to 0 while the
+// light's disc sinks behind the earth.
+struct AtmosphereBeams {
+  vec3 straight;
+  vec3 turned;
+};
+
+WELKIN_FN AtmosphereBeams atmosphereBeams(Atmosphere a, sampler2D transmittanceLut, float altitudeM, float mu) {
   float h = clamp(altitudeM, a.groundAltitudeM, a.topAltitudeM);
   float horizon = atmosphereHorizonMu(a, h);
   float width = kLightRadiusRad * sqrt(max(1.0f - horizon * horizon, 0.0f));
   float seen = smoothstep(-width, width, mu - horizon);
-  if (seen <= 0.0f) return vec3(0.0f);
-  return vec3(textureLod(transmittanceLut, atmosphereTransmittanceUv(a, h, max(mu, horizon)), 0.0f)) * seen;
+  if (seen <= 0.0f) return AtmosphereBeams(vec3(0.0f), vec3(0.0f));
+  vec4 table = textureLod(transmittanceLut, atmosphereTransmittanceUv(a, h, max(mu, horizon)), 0.0f);
+  vec3 straight = vec3(table) * seen;
+  vec3 peak = kHazePeakWeight * a.aerosolScattering * (a.aerosolScaleHeightM * table.w);
+  return AtmosphereBeams(straight, straight * (exp(peak) - vec3(1.0f)));
 }
 
-// ---- Multiple-scattering table: x by the light's mu, y by altitude ------------------------------------------------------------
+// Transmittance from h to space towards a light at mu.
+WELKIN_FN vec3 atmosphereTransmittance(Atmosphere a, sampler2D transmittanceLut, float altitudeM, float mu) {
+  return atmosphereBeams(a, transmittanceLut, altitudeM, mu).straight;
+}
 
-// Denser where the light is near the horizon and where the air is dense.
+// ---- Multiple-scattering table: x by the light's mu, y by moment and altitude ---------------------------------------------------
+// The luminance around a point, all but the two beams, as sum of moment_l P_l(c), of the cosine c of the angle from the light.
+
+// Denser where the light is near the horizon and where the air is dense. Of the moment 0; for the next ones y + 1 / moments.
 WELKIN_FN vec2 atmosphereMultipleScatteringUv(Atmosphere a, float h, float muLight) {
   float x = 0.5f + 0.5f * sign(muLight) * sqrt(abs(muLight));
   float y = sqrt(clamp((h - a.groundAltitudeM) / (a.topAltitudeM - a.groundAltitudeM), 0.0f, 1.0f));
   return vec2((0.5f + x * (kMultipleScatteringSize - 1.0f)) / kMultipleScatteringSize,
-              (0.5f + y * (kMultipleScatteringSize - 1.0f)) / kMultipleScatteringSize);
+              (0.5f + y * (kMultipleScatteringSize - 1.0f)) / (kMultipleScatteringSize * kMultipleScatteringMoments));
 }
 
 WELKIN_FN vec2 atmosphereMultipleScatteringParameters(Atmosphere a, float x, float y) {
@@ -187,8 +208,8 @@ WELKIN_FN vec2 atmosphereMultipleScatteringParameters(Atmosphere a, float x, flo
 }
 
 // Light that reaches a point at h after one scattering along `dir`, per unit of illuminance (first), and the fraction of isotropic
-// light of luminance 1 at each point that does (second): Hillaire's L_2nd and f_ms before the mean over directions.
-// lightDir in the frame of the point. The ground reflects diffusely.
+// light of luminance 1 at each point that does (second): Hillaire's L_2nd and f_ms before the mean over directions. Scattering into the
+// haze's narrow peak is none here. lightDir in the frame of the point. The ground reflects diffusely.
 WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, float h, vec3 dir, vec3 lightDir,
                                      WELKIN_OUT(vec3) single, WELKIN_OUT(vec3) gathered) {
   const int kSteps = 16;
@@ -197,7 +218,7 @@ WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, f
   float tEnd = tGround >= 0.0f ? tGround : atmosphereDistanceToSphere(a, h, dir.z, a.topAltitudeM);
   float c = dot(dir, lightDir);
   float rayleighPhase = phaseRayleigh(c);
-  float aerosolPhase = phaseHaze(c, a.aerosolG);
+  float aerosolPhase = phaseHenyeyGreenstein(c, hazeFineG(a.aerosolG));
   vec3 through = vec3(1.0f);
   single = vec3(0.0f);
   gathered = vec3(0.0f);
@@ -209,18 +230,20 @@ WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, f
     float ht = atmosphereAltitudeAlong(a, h, dir.z, t);
     float muLight = (r * lightDir.z + t * c) / (a.seaRadiusM + ht);
     AtmosphereMedium m = atmosphereMedium(a, ht);
-    vec3 stepThrough = exp(-m.extinction * (t1 - t0));
-    vec3 weight = through * (vec3(1.0f) - stepThrough) / max(m.extinction, vec3(1e-20f));
-    single += weight * atmosphereTransmittance(a, transmittanceLut, ht, muLight) *
-              (m.rayleigh * rayleighPhase + m.aerosol * aerosolPhase);
-    gathered += weight * (m.rayleigh + m.aerosol);
+    vec3 aerosol = (1.0f - kHazePeakWeight) * m.aerosol;
+    vec3 extinction = m.extinction - kHazePeakWeight * m.aerosol;
+    vec3 stepThrough = exp(-extinction * (t1 - t0));
+    vec3 weight = through * (vec3(1.0f) - stepThrough) / max(extinction, vec3(1e-20f));
+    AtmosphereBeams beams = atmosphereBeams(a, transmittanceLut, ht, muLight);
+    single += weight * (beams.straight + beams.turned) * (m.rayleigh * rayleighPhase + aerosol * aerosolPhase);
+    gathered += weight * (m.rayleigh + aerosol);
     through *= stepThrough;
     t0 = t1;
   }
   if (tGround >= 0.0f) {
     float muLight = (r * lightDir.z + tGround * c) / (a.seaRadiusM + a.groundAltitudeM);
-    single += through * a.groundAlbedo * (max(muLight, 0.0f) / kAtmospherePi) *
-              atmosphereTransmittance(a, transmittanceLut, a.groundAltitudeM, muLight);
+    AtmosphereBeams beams = atmosphereBeams(a, transmittanceLut, a.groundAltitudeM, muLight);
+    single += through * a.groundAlbedo * (max(muLight, 0.0f) / kAtmospherePi) * (beams.straight + beams.turned);
   }
 }
 
@@ -234,41 +257,90 @@ struct AtmosphereLights {
   vec3 illuminance1;
 };
 
-// What a point at h sends towards the eye from one light, for the phase values of the ray.
-WELKIN_FN vec3 atmosphereSource(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, AtmosphereMedium m, float h,
-                                float muLight, float rayleighPhase, float aerosolPhase) {
-  vec3 direct = atmosphereTransmittance(a, transmittanceLut, h, muLight);
-  vec3 multiple = vec3(textureLod(multipleScatteringLut, atmosphereMultipleScatteringUv(a, h, muLight), 0.0f));
-  return direct * (m.rayleigh * rayleighPhase + m.aerosol * aerosolPhase) + multiple * (m.rayleigh + m.aerosol);
+// How the air turns light by the angle between a ray and a light: phase functions, of haze its two lobes, each for both beams; and for light
+// from all around what they keep of the moments of the table, P_l and all. Rayleigh's own moments are 1, 0, 1/10; Henyey and Greenstein's g^l.
+struct AtmosphereTurn {
+  float rayleigh;
+  float fine;
+  float fineOfTurned;
+  float peak;
+  float peakOfTurned;
+  float rayleighSecond;
+  float fineFirst;
+  float fineSecond;
+};
+
+WELKIN_FN AtmosphereTurn atmosphereTurn(Atmosphere a, float c) {
+  float fine = hazeFineG(a.aerosolG);
+  float second = 1.5f * c * c - 0.5f;
+  return AtmosphereTurn(phaseRayleigh(c), phaseHenyeyGreenstein(c, fine), phaseHenyeyGreenstein(c, fine * kHazePeakG),
+                        phaseHenyeyGreenstein(c, kHazePeakG), phaseHenyeyGreenstein(c, kHazePeakG * kHazePeakG), 0.1f * second, fine * c,
+                        fine * fine * second);
 }
 
-// Carries the march over [t0, t1]: adds to inscatter, multiplies transmittance. Under the ground the air is taken as at the ground, so that
-// tables stay smooth across the horizon.
+// What a point at h sends towards the eye from one light: all but what coarse haze turns by little, and that.
+struct AtmosphereSource {
+  vec3 wide;
+  vec3 narrow;
+};
+
+WELKIN_FN AtmosphereSource atmosphereSource(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, AtmosphereMedium m,
+                                            float h, float muLight, AtmosphereTurn turn) {
+  AtmosphereBeams beams = atmosphereBeams(a, transmittanceLut, h, muLight);
+  vec2 uv = atmosphereMultipleScatteringUv(a, h, muLight);
+  vec2 next = vec2(0.0f, 1.0f / kMultipleScatteringMoments);
+  vec3 mean = vec3(textureLod(multipleScatteringLut, uv, 0.0f));
+  vec3 first = vec3(textureLod(multipleScatteringLut, uv + next, 0.0f));
+  vec3 second = vec3(textureLod(multipleScatteringLut, uv + 2.0f * next, 0.0f));
+  vec3 fine = (1.0f - kHazePeakWeight) * m.aerosol, peak = kHazePeakWeight * m.aerosol;
+  return AtmosphereSource((beams.straight + beams.turned) * (m.rayleigh * turn.rayleigh) +
+                              fine * (beams.straight * turn.fine + beams.turned * turn.fineOfTurned) +
+                              m.rayleigh * max(mean + turn.rayleighSecond * second, vec3(0.0f)) +
+                              fine * max(mean + turn.fineFirst * first + turn.fineSecond * second, vec3(0.0f)),
+                          peak * (beams.straight * turn.peak + beams.turned * turn.peakOfTurned));
+}
+
+// What a march carries along a ray.
+struct AtmosphereRay {
+  vec3 inscatter;
+  vec3 transmittance;
+  vec3 kept;  // transmittance where coarse haze, turning light by little, takes none: of light that comes from wide around
+};
+
+// Carries the march over [t0, t1]. Under the ground the air is taken as at the ground, so that tables stay smooth across the horizon.
 WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, float eyeAltitudeM, vec3 dir,
-                               AtmosphereLights lights, float t0, float t1, WELKIN_INOUT(vec3) inscatter,
-                               WELKIN_INOUT(vec3) transmittance) {
+                               AtmosphereLights lights, float t0, float t1, WELKIN_INOUT(AtmosphereRay) ray) {
   float r = a.seaRadiusM + eyeAltitudeM;
   float t = 0.5f * (t0 + t1);
   float along = atmosphereAltitudeAlong(a, eyeAltitudeM, dir.z, t);
   float h = max(along, a.groundAltitudeM);
   AtmosphereMedium m = atmosphereMedium(a, h);
-  vec3 source = vec3(0.0f);
+  vec3 wide = vec3(0.0f);
+  vec3 narrow = vec3(0.0f);
   if (lights.illuminance0.y > 0.0f) {
     float c = dot(dir, lights.direction0);
     float muLight = (r * lights.direction0.z + t * c) / (a.seaRadiusM + along);
-    source += lights.illuminance0 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
-                                                     phaseHaze(c, a.aerosolG));
+    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c));
+    wide += lights.illuminance0 * s.wide;
+    narrow += lights.illuminance0 * s.narrow;
   }
   if (lights.illuminance1.y > 0.0f) {
     float c = dot(dir, lights.direction1);
     float muLight = (r * lights.direction1.z + t * c) / (a.seaRadiusM + along);
-    source += lights.illuminance1 * atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, phaseRayleigh(c),
-                                                     phaseHaze(c, a.aerosolG));
+    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c));
+    wide += lights.illuminance1 * s.wide;
+    narrow += lights.illuminance1 * s.narrow;
   }
-  vec3 stepThrough = exp(-m.extinction * (t1 - t0));
-  inscatter += transmittance * source * (vec3(1.0f) - stepThrough) / max(m.extinction, vec3(1e-20f));
-  transmittance *= stepThrough;
+  vec3 keptExtinction = m.extinction - kHazePeakWeight * m.aerosol;
+  vec3 through = exp(-m.extinction * (t1 - t0));
+  vec3 kept = exp(-keptExtinction * (t1 - t0));
+  ray.inscatter += ray.kept * wide * (vec3(1.0f) - kept) / max(keptExtinction, vec3(1e-20f)) +
+                   ray.transmittance * narrow * (vec3(1.0f) - through) / max(m.extinction, vec3(1e-20f));
+  ray.transmittance *= through;
+  ray.kept *= kept;
 }
+
+WELKIN_FN AtmosphereRay atmosphereRayAtEye() { return AtmosphereRay(vec3(0.0f), vec3(1.0f), vec3(1.0f)); }
 
 // Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
 // the total amount of starlight". What the air takes from the straight ray it partly gives back from the rest of the dome, more so over
@@ -299,15 +371,14 @@ WELKIN_FN vec3 atmosphereSkyRay(Atmosphere a, sampler2D transmittanceLut, sample
   float tGround = atmosphereDistanceToGround(a, h, dir.z);
   float tEnd = tGround >= 0.0f ? tGround : sqrt(max(b * b - aboveTop, 0.0f)) - b;
   float tLow = clamp(-b, tStart, tEnd);  // the lowest point: steps are short around it and around the eye
-  vec3 inscatter = vec3(0.0f);
-  vec3 through = vec3(1.0f);
+  AtmosphereRay ray = atmosphereRayAtEye();
   if (tLow > tStart) {
     int n = int(14.0f * quality);
     float t0 = tStart;
     for (int i = 1; i <= n; ++i) {
       float x = float(i) / float(n);
       float t1 = tStart + (tLow - tStart) * x * x * (3.0f - 2.0f * x);
-      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, inscatter, through);
+      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
       t0 = t1;
     }
   }
@@ -317,12 +388,12 @@ WELKIN_FN vec3 atmosphereSkyRay(Atmosphere a, sampler2D transmittanceLut, sample
     for (int i = 1; i <= n; ++i) {
       float x = float(i) / float(n);
       float t1 = tLow + (tEnd - tLow) * x * x * x;
-      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, inscatter, through);
+      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
       t0 = t1;
     }
   }
-  if (tGround < 0.0f) inscatter += atmosphereAirglow(a, transmittanceLut, h, dir.z);
-  return inscatter;
+  if (tGround < 0.0f) ray.inscatter += atmosphereAirglow(a, transmittanceLut, h, dir.z);
+  return ray.inscatter;
 }
 
 // ---- Directions in the sky-view and aerial tables -----------------------------------------------------------------------------

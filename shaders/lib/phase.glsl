@@ -37,9 +37,9 @@ WELKIN_FN float phaseCornetteShanks(float c, float g) { return phaseDraine(c, g,
 // for multiple scattering calculations".
 WELKIN_CONST float kHazePeakG = 0.85f;
 WELKIN_CONST float kHazePeakWeight = 0.45f;
+WELKIN_FN float hazeFineG(float g) { return (g - kHazePeakWeight * kHazePeakG) / (1.0f - kHazePeakWeight); }
 WELKIN_FN float phaseHaze(float c, float g) {
-  float fine = (g - kHazePeakWeight * kHazePeakG) / (1.0f - kHazePeakWeight);
-  return mix(phaseHenyeyGreenstein(c, fine), phaseHenyeyGreenstein(c, kHazePeakG), kHazePeakWeight);
+  return mix(phaseHenyeyGreenstein(c, hazeFineG(g)), phaseHenyeyGreenstein(c, kHazePeakG), kHazePeakWeight);
 }
 
 // The parameters of the droplet phase function below.

@@ -23,29 +23,32 @@ void store(float* p, const vec3& v) {
 Image<float> makeTransmittance(const shared::Atmosphere& a) {
   const int w = static_cast<int>(shared::kTransmittanceWidth),
             h = static_cast<int>(shared::kTransmittanceHeight);
-  Image<float> table(w, h, 3);
+  Image<float> table(w, h, 4);
   parallelFor(static_cast<std::size_t>(h), 4, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
       for (int i = 0; i < w; ++i) {
         const vec2 p = shared::atmosphereTransmittanceParameters(
             a, static_cast<float>(i) / (shared::kTransmittanceWidth - 1),
             static_cast<float>(j) / (shared::kTransmittanceHeight - 1));
-        store(&table.at(i, j), glm::exp(-shared::atmosphereOpticalDepth(a, p.x, p.y)));
+        const shared::vec4 depth = shared::atmosphereOpticalDepth(a, p.x, p.y);
+        store(&table.at(i, j), glm::exp(-vec3(depth)));
+        table.at(i, j, 3) = depth.w / a.aerosolScaleHeightM;
       }
     }
   });
   return table;
 }
 
-// Hillaire 2020, eq. 5 to 10: all orders from the second on as a geometric series of isotropic exchanges with
-// a neighbourhood that is lit like the point itself.
+// Moments of the light around a point (shaders/lib/atmosphere.glsl). Of the mean, after Hillaire 2020, eq. 5
+// to 10, all orders from the second on as a geometric series of isotropic exchanges with a neighbourhood that
+// is lit like the point itself; of the others the second order alone, which has most of them.
 Image<float> makeMultipleScattering(const shared::Atmosphere& a, const Image<float>& transmittance) {
   const int size = static_cast<int>(shared::kMultipleScatteringSize);
   constexpr int kElevations = 8, kAzimuths = 4;  // azimuths over half a turn: the light's plane is a mirror
   // A light so far down (20 degrees) reaches no air that is seen from air that is seen: the table stays 0.
   constexpr float kDarkMu = -0.35f;
   const shared::sampler2D lut{&transmittance};
-  Image<float> table(size, size, 3);
+  Image<float> table(size, size * static_cast<int>(shared::kMultipleScatteringMoments), 3);
   parallelFor(static_cast<std::size_t>(size), 1, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
       for (int i = 0; i < size; ++i) {
@@ -54,20 +57,25 @@ Image<float> makeMultipleScattering(const shared::Atmosphere& a, const Image<flo
             static_cast<float>(j) / static_cast<float>(size - 1));
         if (p.y < kDarkMu) continue;
         const vec3 light(std::sqrt(std::max(1.0f - p.y * p.y, 0.0f)), 0.0f, p.y);
-        vec3 single(0.0f), gathered(0.0f);
+        vec3 mean(0.0f), first(0.0f), second(0.0f), gathered(0.0f);
         for (int e = 0; e < kElevations; ++e) {
           const float mu = -1.0f + (static_cast<float>(e) + 0.5f) * 2.0f / kElevations;
           for (int f = 0; f < kAzimuths; ++f) {
             const float azimuth = (static_cast<float>(f) + 0.5f) * static_cast<float>(kPi) / kAzimuths;
+            const vec3 direction = shared::atmosphereDirection(mu, azimuth, vec3(1, 0, 0));
             vec3 s, g;
-            shared::atmosphereSecondOrder(
-                a, lut, p.x, shared::atmosphereDirection(mu, azimuth, vec3(1, 0, 0)), light, s, g);
-            single += s;
+            shared::atmosphereSecondOrder(a, lut, p.x, direction, light, s, g);
+            const float c = glm::dot(direction, light);
+            mean += s;
+            first += 3.0f * c * s;
+            second += 5.0f * (1.5f * c * c - 0.5f) * s;
             gathered += g;
           }
         }
         constexpr float kWeight = 1.0f / (kElevations * kAzimuths);
-        store(&table.at(i, j), single * kWeight / (vec3(1.0f) - glm::min(gathered * kWeight, vec3(0.999f))));
+        store(&table.at(i, j), mean * kWeight / (vec3(1.0f) - glm::min(gathered * kWeight, vec3(0.999f))));
+        store(&table.at(i, size + j), first * kWeight);
+        store(&table.at(i, 2 * size + j), second * kWeight);
       }
     }
   });

@@ -86,8 +86,8 @@ class Atmosphere {
   explicit Atmosphere(const AtmosphereUniforms& uniforms);
 
   const AtmosphereUniforms& uniforms() const { return uniforms_; }
-  const Image<float>& transmittance() const { return transmittance_; }            // 256 x 64 RGB
-  const Image<float>& multipleScattering() const { return multipleScattering_; }  // 32 x 32 RGB
+  const Image<float>& transmittance() const { return transmittance_; }            // 256 x 64 RGBA
+  const Image<float>& multipleScattering() const { return multipleScattering_; }  // 32 x 96 RGB
 
   double groundAltitudeM() const { return uniforms_.groundAltitudeM; }
   double topAltitudeM() const { return uniforms_.topAltitudeM; }

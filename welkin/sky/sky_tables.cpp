@@ -75,7 +75,7 @@ void addAerial(const Job& job, int first, int last, Volume<float>& inscatterTabl
         const float azimuth =
             shared::atmosphereXToAzimuth(static_cast<float>(i) / static_cast<float>(nx - 1));
         const vec3 dir = shared::atmosphereDirection(mu, azimuth, job.direction0);
-        vec3 inscatter(0.0f), through(1.0f);
+        shared::AtmosphereRay ray = shared::atmosphereRayAtEye();
         float t0 = 0.0f;
         for (int k = 0; k < nz; ++k) {
           for (int s = k == 0 ? kStepsPerSlice : 1; s <= kStepsPerSlice; ++s) {
@@ -83,14 +83,14 @@ void addAerial(const Job& job, int first, int last, Volume<float>& inscatterTabl
                             static_cast<float>(nz - 1);
             const float t1 = shared::atmosphereZToDistance(std::max(z, 0.0f));
             shared::atmosphereMarch(job.a, job.transmittance, job.multipleScattering, job.eyeM, dir,
-                                    job.lights, t0, t1, inscatter, through);
+                                    job.lights, t0, t1, ray);
             t0 = t1;
           }
-          add(&inscatterTable.at(i, j, k), inscatter);
-          store(&transmittanceTable.at(i, j, k), through);
+          add(&inscatterTable.at(i, j, k), ray.inscatter);
+          store(&transmittanceTable.at(i, j, k), ray.transmittance);
           if (mirror >= columns) {
-            add(&inscatterTable.at(mirror, j, k), inscatter);
-            store(&transmittanceTable.at(mirror, j, k), through);
+            add(&inscatterTable.at(mirror, j, k), ray.inscatter);
+            store(&transmittanceTable.at(mirror, j, k), ray.transmittance);
           }
         }
       }

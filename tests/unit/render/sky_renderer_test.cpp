@@ -128,7 +128,7 @@ TEST_F(Sky, DeepensUpwards) {
     const glm::vec3 c = meanOf(picture, y0, y1);
     return c.z / c.x;
   };
-  EXPECT_GT(blueness(0, 6), 1.3 * blueness(28, 34));
+  EXPECT_GT(blueness(0, 6), 1.25 * blueness(28, 34));
   EXPECT_GT(luminanceOf(meanOf(picture, 28, 34)), luminanceOf(meanOf(picture, 0, 6)));
 }
 

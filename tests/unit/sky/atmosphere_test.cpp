@@ -70,7 +70,7 @@ TEST(AtmosphereTables, ParametrisationsAreInverse) {
       const vec2 m = shared::atmosphereMultipleScatteringParameters(a, x, y);
       const vec2 muv = shared::atmosphereMultipleScatteringUv(a, m.x, m.y);
       EXPECT_NEAR((muv.x * 32.0f - 0.5f) / 31.0f, x, 1e-4f);
-      EXPECT_NEAR((muv.y * 32.0f - 0.5f) / 31.0f, y, 1e-4f);
+      EXPECT_NEAR((3.0f * muv.y * 32.0f - 0.5f) / 31.0f, y, 1e-4f);
       EXPECT_NEAR(shared::atmosphereAzimuthToX(shared::atmosphereXToAzimuth(x)), x, 1e-5f);
       EXPECT_NEAR(shared::atmosphereDistanceToZ(shared::atmosphereZToDistance(x)), x, 1e-5f);
     }
@@ -170,7 +170,7 @@ TEST(Transmittance, EarthHidesTheLightSmoothly) {
 
 // Where nothing absorbs, what leaves the top and what the ground absorbs add up to what came. The series for
 // multiple scattering takes every point's surroundings to be lit like the point itself, which loses up to a
-// tenth; no more, and nothing may be made.
+// tenth, and what coarse haze turns of the ground's light is lost, too; no more, and nothing may be made.
 TEST(Energy, NothingIsLostInAConservativeAtmosphere) {
   for (float groundAlbedo : {0.0f, 1.0f}) {
     AtmosphereUniforms u = atmosphereUniforms({}, 60e3, 0.0, glm::vec3(groundAlbedo));
@@ -200,7 +200,7 @@ TEST(Energy, NothingIsLostInAConservativeAtmosphere) {
       }
       const double leaves = luminance(up), absorbed = luminance(ground) * (1 - groundAlbedo);
       const double kept = (leaves + absorbed) / (1000.0 * mu0);
-      EXPECT_GT(kept, 0.88) << groundAlbedo << " " << elevationDeg;
+      EXPECT_GT(kept, 0.86) << groundAlbedo << " " << elevationDeg;
       EXPECT_LT(kept, 1.03) << groundAlbedo << " " << elevationDeg;
     }
   }

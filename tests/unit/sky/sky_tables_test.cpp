@@ -43,17 +43,17 @@ struct Scene {
   }
   // March with many small steps.
   void fineAerial(const vec3& dir, double distanceM, vec3& inscatter, vec3& through) const {
-    inscatter = vec3(0.0f);
-    through = vec3(1.0f);
+    shared::AtmosphereRay ray = shared::atmosphereRayAtEye();
     constexpr int kSteps = 1000;
     float t0 = 0.0f;
     for (int i = 1; i <= kSteps; ++i) {
       const float x = static_cast<float>(i) / kSteps, t1 = static_cast<float>(distanceM) * x * x;
       shared::atmosphereMarch(shared, {&air.transmittance()}, {&air.multipleScattering()},
-                              static_cast<float>(eyeM), dir, shared::lightPair(lights, 0), t0, t1, inscatter,
-                              through);
+                              static_cast<float>(eyeM), dir, shared::lightPair(lights, 0), t0, t1, ray);
       t0 = t1;
     }
+    inscatter = ray.inscatter;
+    through = ray.transmittance;
   }
   void aerial(const vec3& dir, double distanceM, vec3& inscatter, vec3& through) const {
     shared::atmosphereAerial(shared, {&tables.aerialInscatter, glsl::Wrap::kClamp},
