@@ -36,6 +36,14 @@ namespace shared {
 using namespace welkin::glsl;
 using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
+// After it.
+#include "shaders/lib/phase.glsl"
+// After the phase functions that it calls.
+#include "shaders/lib/cloud_light.glsl"
+// After those.
+#include "shaders/lib/cloud_light_fit.glsl"
+// After all.
+#include "shaders/lib/cloud_scattering.glsl"
 }  // namespace shared
 
 using reference::Ray;
@@ -62,6 +70,10 @@ enum Column {
   kGenus,
   kSky,
   kDistance,  // from the eye, m
+  kBehindToSun,  // optical depths 300 m farther along the view (kBehindM of lib/cloud_scattering.glsl)
+  kBehindFromSun,
+  kBehindUp,
+  kBehindDown,
   kColumns
 };
 
@@ -260,6 +272,11 @@ int run(int argc, char** argv) {
           row[kCover] = static_cast<float>(layer.oktas / kOktas);
           row[kDirect] = static_cast<float>(std::exp(-clouds.depth({p, sun}, 60e3, 30.0)));
           row[kPhase] = static_cast<float>((hit->ice ? crystals : droplets).density(glm::dot(view, sun)));
+          const glm::vec4 behind = volume.at(q + shared::kBehindM * glm::vec3(view));
+          row[kBehindToSun] = behind.x;
+          row[kBehindFromSun] = behind.z;
+          row[kBehindUp] = behind.y;
+          row[kBehindDown] = behind.w;
           double lit = 0.0;
           int above = 0, below = 0;
           for (int k = 0; k < paths; ++k) {

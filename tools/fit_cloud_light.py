@@ -6,7 +6,7 @@
     tools/fit_cloud_light.py EXAMPLES.f32... [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
 
 Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
-used. The network: twelve numbers, two layers of sixteen x / (1 + |x|), two numbers: the logarithm of a factor of
+used. The network: sixteen numbers, two layers of sixteen x / (1 + |x|), two numbers: the logarithm of a factor of
 the light scattered more than once, and of the odds of light from above. Least squares of relative errors, by Adam
 (D. P. Kingma and J. Ba 2015, "Adam: A Method for Stochastic Optimization"). The examples are noisy means over a
 few paths; their noise has no bias, and evens out.
@@ -16,7 +16,7 @@ import argparse
 import numpy as np
 
 COLUMNS = ("to_sun from_sun up down to_eye cos_sun view_height sun_height ice cover direct phase sun above below "
-           "paths genus sky distance").split()
+           "paths genus sky distance behind_to_sun behind_from_sun behind_up behind_down").split()
 SIMILARITY = 1 - 0.86  # the constants of shaders/lib/cloud_light.glsl
 WIDTH = 16
 LEAST = 0.01           # 1/sr: what errors are relative to where clouds are dark
@@ -58,12 +58,13 @@ def inputs(d):
         return np.log1p(np.maximum(x, 0)) / 3
     return np.stack([log(d["to_sun"]), log(d["from_sun"]), log(d["up"]), log(d["down"]), log(d["to_eye"]), d["cos_sun"],
                      d["view_height"], d["sun_height"], np.sqrt(np.maximum(0.5 - 0.5 * d["cos_sun"], 0)), d["ice"],
-                     log(d["distance"] / 1000), d["cover"]], 1).astype(np.float32)
+                     log(d["distance"] / 1000), d["cover"], log(d["behind_to_sun"]), log(d["behind_from_sun"]),
+                     log(d["behind_up"]), log(d["behind_down"])], 1).astype(np.float32)
 
 
 class Network:
     def __init__(self, rng):
-        sizes = [12, WIDTH, WIDTH, 2]
+        sizes = [16, WIDTH, WIDTH, 2]
         self.weights = [rng.normal(0, a ** -0.5, (a, b)).astype(np.float32) for a, b in zip(sizes, sizes[1:])]
         self.weights[-1] *= 0.1
         self.biases = [np.zeros(b, np.float32) for b in sizes[1:]]
@@ -165,7 +166,7 @@ def glsl(network, note):
     body = "\n".join(lines)
     return f"""// SPDX-License-Identifier: Apache-2.0
 // Written by tools/fit_cloud_light.py, which says what it is; {note}.
-WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2) {{
+WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2, vec4 x3) {{
 {body}
 }}
 """

@@ -2,7 +2,7 @@
 // Light that volumes scatter: the closed forms of lib/cloud_light.glsl, corrected by a small network that was fitted to the reference
 // renderer (tools/fit_cloud_light.py). A slab is what the closed forms take a cloud for; how much more or less light comes out of its
 // sides, from between clouds and towards the eye, the network has learnt from points in the clouds of random skies. It sees what the
-// march knows anyhow. Needs lib/cloud_light.glsl and lib/cloud_light_fit.glsl before it.
+// march knows anyhow, and the optical depths some way behind the point, whence most of the light comes that goes on towards the eye. Needs lib/cloud_light.glsl and lib/cloud_light_fit.glsl before it.
 
 // How a point is seen.
 struct CloudView {
@@ -10,7 +10,10 @@ struct CloudView {
   float height;     // sine of the elevation of the direction of view
   float toEye;      // optical depth
   float distanceM;
+  CloudDepths behind;  // kBehindM farther along the view
 };
+
+WELKIN_CONST float kBehindM = 300.0f;
 
 // What it does with light: of the sun, scattered radiance per unit extinction and unit illuminance, 1/sr; and the shares of light from
 // above (x) and from below (y), which sum to 1, as clouds absorb nothing.
@@ -33,7 +36,8 @@ WELKIN_FN CloudScattering cloudScattering(CloudDepths d, CloudView view, float i
   vec2 logs = cloudLightFit(
       log(1.0f + vec4(d.toSun, d.fromSun, d.up, d.down)) / 3.0f,
       vec4(log(1.0f + view.toEye) / 3.0f, view.cosSun, view.height, sunHeight),
-      vec4(sqrt(max(0.5f - 0.5f * view.cosSun, 0.0f)), ice, log(1.0f + 0.001f * view.distanceM) / 3.0f, cover));
+      vec4(sqrt(max(0.5f - 0.5f * view.cosSun, 0.0f)), ice, log(1.0f + 0.001f * view.distanceM) / 3.0f, cover),
+      log(1.0f + vec4(view.behind.toSun, view.behind.fromSun, view.behind.up, view.behind.down)) / 3.0f);
   float above = shares.x / (shares.x + shares.y * exp(clamp(-logs.y, -kMostCorrection, kMostCorrection)));
   return CloudScattering(direct + others * exp(clamp(logs.x, -kMostCorrection, kMostCorrection)), vec2(above, 1.0f - above));
 #endif

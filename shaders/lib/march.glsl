@@ -187,7 +187,8 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, fl
     float through = exp(-point.extinction * stepM);
     float share = state.transmittance * (1.0 - through);
     state.luminance += share * cloudSource(band, p, q, point, detail, phases,
-                                           CloudView(cosSun, dir.z, -log(state.transmittance), t), around, dither.y);
+                                           CloudView(cosSun, dir.z, -log(state.transmittance), t,
+                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), around, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;

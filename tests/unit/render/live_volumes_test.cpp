@@ -71,7 +71,7 @@ TEST_F(LiveVolumesTest, AViewThatStaysConvergesToTheStill) {
     EXPECT_LT(first, 0.12);
     EXPECT_LT(round, first);
     EXPECT_LT(last, round);
-    EXPECT_LT(last, 0.02);
+    EXPECT_LT(last, 0.025);
     EXPECT_EQ(firstBadValue(target.readPicture(0, 3)), -1);
   }
 }
