@@ -94,6 +94,7 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       ->group("Picture");
   add(app, "--technique", a.technique, "NAME", one("technique"))->group("Picture");
   add(app, "--metaballs-as", a.metaballsAs, "NAME", one("metaballs_as"))->group("Picture");
+  add(app, "--droplets", a.droplets, "NAME", one("droplets"))->group("Picture");
   add(app, "--quality", a.quality, "NAME", one("output.quality"))->group("Picture");
   add(app, "--exposure", a.exposure, "auto|EV", one("output.exposure_ev"))->group("Picture");
   app->add_flag(
@@ -118,11 +119,6 @@ void describeRender(CLI::App* app, RenderArgs& a) {
       "up "
       "to date")
       ->group("Running");
-  add(app, "--droplets", a.droplets, "fit|mie",
-      "how droplets scatter for the reference renderer: as for gpu (default), or by Mie's theory, with "
-      "fogbow "
-      "and glory")
-      ->group("Picture");
   add(app, "--frames", a.frames, "N", one("output.frames"))->group("Sequences");
   add(app, "--fps", a.fps, "F", one("output.fps"))->group("Sequences");
   add(app, "--speed", a.speed, "S", one("output.speed"))->group("Sequences");

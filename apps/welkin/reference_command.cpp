@@ -99,11 +99,10 @@ int runReference(const RenderSettings& settings) {
   report.state = scene::buildSky(settings.scene, settings.scene.atS);
   report.passes.push_back({"sky", 1e3 * secondsSince(begin)});
   for (const std::string& warning : report.state.warnings) progress.warn(warning);
-  const reference::SkyTracer tracer(
-      report.state, {.seed = static_cast<std::uint64_t>(settings.scene.seed), .droplets = settings.droplets});
+  const reference::SkyTracer tracer(report.state, {.seed = static_cast<std::uint64_t>(settings.scene.seed),
+                                                   .droplets = settings.scene.droplets});
   // What paths depend on.
-  const std::string scene = scene::toJson(settings.scene) +
-                            (settings.droplets == reference::DropletModel::kMie ? " droplets mie" : "");
+  const std::string scene = scene::toJson(settings.scene);
   reference::SkyFilm film = openFilm(settings, scene);
 
   const double noise = settings.noise.value_or(settings.spp ? 0.0 : kDefaultNoise);

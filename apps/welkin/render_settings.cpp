@@ -75,17 +75,13 @@ void setRenderer(RenderSettings& r, const RenderArgs& a) {
   r.reference = name == "reference";
   for (const auto& [flag, given] :
        {std::pair("--spp", a.spp.has_value()), std::pair("--noise", a.noise.has_value()),
-        std::pair("--resume", a.resume.has_value()), std::pair("--droplets", a.droplets.has_value())})
+        std::pair("--resume", a.resume.has_value())})
     if (given && !r.reference)
       throw UsageError(std::string(flag) +
                        " belongs to the reference renderer; expected --renderer reference");
   if (a.spp) r.spp = wholeNumber("--spp", *a.spp, 1, 2000000000);
   if (a.noise) r.noise = numberIn("--noise", *a.noise, 1e-5, 1.0);
   if (a.resume) r.resume = *a.resume;
-  if (!a.droplets) return;
-  if (*a.droplets != "fit" && *a.droplets != "mie")
-    throw UsageError("--droplets is \"" + *a.droplets + "\"; expected fit or mie");
-  r.droplets = *a.droplets == "mie" ? reference::DropletModel::kMie : reference::DropletModel::kFit;
 }
 
 // A slab is traced and reported; a sky is drawn.
@@ -224,6 +220,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   if (metaballs) frameCloud(s, a.eye.has_value(), a.look.has_value());
   set(s, "--technique", "technique", a.technique);
   set(s, "--metaballs-as", "metaballs_as", a.metaballsAs);
+  set(s, "--droplets", "droplets", a.droplets);
   set(s, "--quality", "output.quality", a.quality);
   set(s, "--exposure", "output.exposure_ev", a.exposure);
   if (a.noSunDisc) s.output.sunDisc = false;

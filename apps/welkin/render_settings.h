@@ -25,8 +25,7 @@ struct RenderSettings {
   std::optional<int> spp;                          // of the reference renderer: paths at most
   std::optional<double> noise;                     // and the relative standard error to stop at
   std::string resume;                              // and its unfinished work; empty: none
-  reference::DropletModel droplets = reference::DropletModel::kFit;
-  int threads = 0;  // 0: all
+  int threads = 0;                                 // 0: all
 };
 
 // A number and a whole number from `low` to `high`, and the one that --threads takes. Throw UsageError.

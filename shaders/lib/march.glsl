@@ -17,6 +17,9 @@
 
 uniform sampler3D uLightVolume;
 uniform DropletPhase uDroplets;
+#ifdef WELKIN_MIE
+uniform sampler2D uMieDroplets;   // red, green, blue by the scattering angle, from 0 to pi (welkin/optics/mie_droplets.h)
+#endif
 uniform float uStepNearM;         // smallest step
 uniform float uStepShare;         // step as a share of the distance
 uniform float uStepLong;          // the longest step through clear air, in those of the above
@@ -30,6 +33,15 @@ uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and
 #endif
 
 const int kSurfaceHalvings = 3;   // of the step in which a surface was met
+
+// The phase functions of the first scattering along a ray, 1/sr.
+struct FirstPhases {
+  float droplets;       // by the fit
+  float ice;
+#ifdef WELKIN_MIE
+  vec3 beyondFit;       // what Mie's theory has for droplets, less the fit
+#endif
+};
 
 struct CloudRay {
   vec3 luminance;       // scattered towards the eye by volumes, cd/m2
@@ -53,7 +65,7 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 phases, CloudView view, AroundClouds around, float dither) {
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, FirstPhases phases, CloudView view, AroundClouds around, float dither) {
   // Towards the sun: first through the point's own density, then through samples at distances that grow
   // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says.
   float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
@@ -68,16 +80,20 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, vec2 
   CloudDepths depths = cloudDepthsAt(uLightVolume, q);
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float ice = point.ice / point.extinction;
-  float phase = mix(phases.x, phases.y, ice);
+  float phase = mix(phases.droplets, phases.ice, ice);
   CloudScattering scattered =
       cloudScattering(depths, view, ice, point.cover / point.extinction, phase, uKeyDirection.z);
+  vec3 sun = vec3(scattered.sun);
+#ifdef WELKIN_MIE
+  sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
+#endif
 #ifdef WELKIN_SHEETS
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
   float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
-  return keyLightAt(q.z, p) * (sheets * scattered.sun) +
+  return keyLightAt(q.z, p) * (sheets * sun) +
          lightFromAbove(around, q.z) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #else
-  return keyLightAt(q.z, p) * scattered.sun +
+  return keyLightAt(q.z, p) * sun +
          lightFromAbove(around, q.z) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #endif
 }
@@ -110,7 +126,7 @@ void meetSplats(float distanceM, inout MarchState state) {
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
 // free path on: most of what is seen lies there, and the light changes fastest.
-void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, vec2 phases, float cosSun, AroundClouds around, vec2 dither,
+void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases phases, float cosSun, AroundClouds around, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
   t += max(uStepNearM, uStepShare * t) * (0.02 + dither.x);
@@ -217,11 +233,11 @@ struct SheetSeen {
 };
 
 // Its luminance as it arrives, air and all.
-vec3 lightOfSheet(SheetSeen seen, vec3 dir, vec2 phases, float cosSun) {
+vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
   vec3 inscatter, through;
   aerial(dir, seen.hit.distanceM, inscatter, through);
   float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(seen.hit.p, uEarthRadiusM)));
-  vec3 light = sheetLuminance(seen.sheet, WELKIN_SHEET_TIER(seen.sheet), seen.hit, seen.texel, seen.way, sun, phases.x, cosSun, dir.z);
+  vec3 light = sheetLuminance(seen.sheet, WELKIN_SHEET_TIER(seen.sheet), seen.hit, seen.texel, seen.way, sun, phases.droplets, cosSun, dir.z);
   return light * through + inscatter;
 }
 #endif
@@ -237,8 +253,16 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, vec2 phases, float cosSun) {
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
   AroundClouds around = aroundClouds(dir);
-  vec2 phases = vec2(phaseDroplet(cosSun, uDroplets),
-                     mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45));
+  FirstPhases phases;
+  phases.droplets = phaseDroplet(cosSun, uDroplets);
+  phases.ice = mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45);
+#ifdef WELKIN_MIE
+  // The angle by its tangent, as cosines know little of those near the glory; ends are middles of texels.
+  float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;
+  float texels = float(textureSize(uMieDroplets, 0).x);
+  vec2 at = vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5);
+  phases.beyondFit = vec3(textureLod(uMieDroplets, at, 0.0)) - phases.droplets;
+#endif
 #ifdef WELKIN_SHEETS
   MarchState state = WELKIN_MARCH_BEGIN;
   vec2 stretch;

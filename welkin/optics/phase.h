@@ -4,6 +4,11 @@
 // straight on. Pure functions, safe from any thread.
 #pragma once
 
+#include <array>
+#include <string_view>
+
+#include "welkin/core/params.h"
+
 namespace welkin::optics {
 
 float phaseRayleigh(float c);
@@ -11,6 +16,9 @@ float phaseHenyeyGreenstein(float c, float g);
 float phaseDraine(float c, float g, float alpha);
 float phaseCornetteShanks(float c, float g);
 float phaseHaze(float c, float g);  // two lobes; g: mean cosine, up to 0.9
+
+// How cloud droplets scatter: by the fit below, or by Mie's theory, with fogbow and glory.
+enum class DropletModel { kFit, kMie };
 
 // Mean cosine of a Draine (and, with alpha = 1, of a Cornette-Shanks) phase function.
 float draineMeanCosine(float g, float alpha);
@@ -30,3 +38,8 @@ float dropletMeanCosine(const DropletPhase& p);
 float dropletAsymmetry();
 
 }  // namespace welkin::optics
+
+namespace welkin {
+template <>
+inline constexpr auto kEnumNames<optics::DropletModel> = std::array<std::string_view, 2>{"fit", "mie"};
+}  // namespace welkin

@@ -6,16 +6,14 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
-#include <string_view>
 
-#include "welkin/core/params.h"
 #include "welkin/core/random.h"
+#include "welkin/optics/phase.h"
 #include "welkin/reference/phase_sampler.h"
 
 namespace welkin::reference {
 
-// How droplets scatter: as the GPU has it, or by Mie's theory, with fogbow and glory.
-enum class DropletModel { kFit, kMie };
+using optics::DropletModel;  // Mie's: mean of three wavelengths, without colours
 
 PhaseSampler dropletPhase(double diameterUm, DropletModel model);
 PhaseSampler icePhase();  // as shaders/lib/march.glsl has it
@@ -35,8 +33,3 @@ struct PeakChain {
 PeakChain drawPeaks(const glm::dvec3& toLight, const PhaseSampler& peak, Random& random);
 
 }  // namespace welkin::reference
-
-namespace welkin {
-template <>
-inline constexpr auto kEnumNames<reference::DropletModel> = std::array<std::string_view, 2>{"fit", "mie"};
-}  // namespace welkin

@@ -52,6 +52,11 @@ bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
          a.rayScale == b.rayScale;
 }
 
+shading::ShaderDefines withDroplets(shading::ShaderDefines defines, const scene::SkyState& state) {
+  if (state.scene.droplets == optics::DropletModel::kMie) defines.emplace_back("WELKIN_MIE", "1");
+  return defines;
+}
+
 }  // namespace
 
 LiveVolumes::LiveVolumes()
@@ -79,7 +84,7 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
   constexpr double kAboveAll = 1e6;
   shading::Uniforms order;
   if (count == 0) {
-    marching_ = &marches_.with(shading::marchDefines(layout_, kAboveAll));
+    marching_ = &marches_.with(withDroplets(shading::marchDefines(layout_, kAboveAll), state));
   } else {
     std::vector<shading::SheetOnRay> onRay;
     for (const ThinLayer& sheet : sheets) {
@@ -92,7 +97,7 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
                        {},
                        1.0f});
     }
-    marching_ = &marches_.with(shading::sheetDefines(layout_, onRay, kAboveAll));
+    marching_ = &marches_.with(withDroplets(shading::sheetDefines(layout_, onRay, kAboveAll), state));
     order = shading::sheetUniforms(layout_, onRay, {}, kAboveAll);
   }
   gpu::Program& p = *marching_;

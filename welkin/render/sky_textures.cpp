@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "welkin/optics/mie_droplets.h"
+#include "welkin/scene/cloud_shapes.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/sky/atmosphere.h"
 
@@ -42,7 +44,15 @@ void SkyTextures::upload(const scene::SkyState& state, const sky::SkyTables& tab
   put(through_, tables.aerialTransmittance, kHalf);
 }
 
+void SkyTextures::updateDroplets(const scene::SkyState& state) {
+  const double diameterUm = scene::dropletDiameterUm(state.weather);
+  if (state.scene.droplets != optics::DropletModel::kMie || mieDiameterUm_ == diameterUm) return;
+  put(mieDroplets_, optics::mieDroplets(diameterUm), kFull);
+  mieDiameterUm_ = diameterUm;
+}
+
 void SkyTextures::update(const scene::SkyState& state) {
+  updateDroplets(state);
   upload(state, sky::makeSkyTables(*state.atmosphere, eyeAltitude(state), state.lights));
   shading::keyLightTable(state, keyLightTable_);
   put(keyLight_, keyLightTable_, kFull);
@@ -95,6 +105,7 @@ void SkyTextures::prepareNext(scene::SkyState& state, double before) {
 }
 
 void SkyTextures::updateLive(scene::SkyState& state) {
+  updateDroplets(state);
   if (atmosphere_ != state.atmosphere || eyeAltitudeM_ != eyeAltitude(state)) {
     for (Key& key : keys_) key.name.reset();
     ahead_.name.reset();
@@ -126,6 +137,7 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uTransmittance", transmittance_);
   program.bind("uSkyView", skyView_);
   program.bind("uKeyLight", keyLight_);
+  if (mieDiameterUm_) program.bind("uMieDroplets", mieDroplets_);
   program.bind("uAerialInscatter", inscatter_);
   program.bind("uAerialTransmittance", through_);
 }

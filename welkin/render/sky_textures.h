@@ -50,6 +50,7 @@ class SkyTextures {
   void make(const scene::SkyState& state, KeyName name, Key& key);
   void start(const scene::SkyState& state, KeyName name, double startedAt);
   void prepareNext(scene::SkyState& state, double before);
+  void updateDroplets(const scene::SkyState& state);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
 
   std::shared_ptr<const sky::Atmosphere> atmosphere_;  // that the keys are of
@@ -62,6 +63,8 @@ class SkyTextures {
   std::optional<std::pair<KeyName, int>> shown_;  // first key instant and weight that are uploaded
   gpu::Texture2D transmittance_, skyView_, keyLight_;
   gpu::Texture3D inscatter_, through_;
+  std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of
+  gpu::Texture2D mieDroplets_;
 };
 
 }  // namespace welkin::render

@@ -90,6 +90,10 @@ void describe(Scene& s, ParamVisitor& v) {
             "how clouds of metaballs are drawn: as splats, lit in two passes, or marched as all volumes are, "
             "with the light of droplets"},
            s.metaballsAs);
+  v.choice({"droplets", "",
+            "how the droplets of marched volumes scatter light the first time: by a smooth fit, or by Mie's "
+            "theory, with fogbow and glory"},
+           s.droplets);
   v.choice({"tier", "", "how layers drawn as sheets are lit: flat, embossed, or lit by their depth"}, s.tier);
   v.value({"theme", "",
            "what technique, tier, drift and sheets start from: thesis-overcast, thesis-broken, thesis-few, "

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "welkin/core/params.h"
+#include "welkin/optics/phase.h"
 #include "welkin/scene/drift.h"
 #include "welkin/scene/metaballs.h"
 #include "welkin/scene/sheet.h"
@@ -82,10 +83,11 @@ struct Scene {
   LayerOctaves octaves;                  // of layers with the technique octaves
   std::vector<Sheet> sheets;             // thin layers by hand, beside the weather's
   std::vector<MetaballCloud> metaballs;  // single clouds by hand, beside the weather's
-  MetaballRender metaballsAs = MetaballRender::kSplats;  // those and the layers made of them
-  Drift drift;                                           // of wind and cover
-  SkyBox skyBox;                                         // in the place of the clear sky
-  Slab slab;                                             // in the place of everything
+  MetaballRender metaballsAs = MetaballRender::kSplats;        // those and the layers made of them
+  optics::DropletModel droplets = optics::DropletModel::kFit;  // of marched volumes
+  Drift drift;                                                 // of wind and cover
+  SkyBox skyBox;                                               // in the place of the clear sky
+  Slab slab;                                                   // in the place of everything
   sky::AtmosphereParams atmosphere;
   Ground ground;
   Camera camera;
