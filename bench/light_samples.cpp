@@ -69,7 +69,7 @@ enum Column {
   kPaths,
   kGenus,
   kSky,
-  kDistance,  // from the eye, m
+  kDistance,     // from the eye, m
   kBehindToSun,  // optical depths 300 m farther along the view (kBehindM of lib/cloud_scattering.glsl)
   kBehindFromSun,
   kBehindUp,

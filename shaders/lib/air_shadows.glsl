@@ -11,10 +11,17 @@ const int kAirSamples = 4;
 // Light that clouds turn by a few degrees only lights the air behind them as if it had not been turned: half of what droplets scatter.
 const float kAirShadow = 0.5;
 
+bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
+
+// The share of what the air at a distance would add in the sun that it does add, but for what sheets take.
+float litAirAt(vec3 dir, float t) {
+  vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
+  return q.z >= uBands[uBandCount - 1].y ? 1.0 : exp(-kAirShadow * cloudDepthToSun(uLightVolume, q));
+}
+
 // The share of what the air of [0, distanceM] would add in the sun that it does add. through: what it lets through.
 float litAir(vec3 dir, float distanceM, vec3 through) {
-  if (uBandCount == 0 || uLineTowardsSun < 0.5) return uClearAir;
-  float topM = uBands[uBandCount - 1].y;
+  if (!airShadowsKnown()) return uClearAir;
   // Places are spread as light is scattered: evenly in what has been let through.
   float absorbed = 1.0 - through.y;
   float perM = -log(max(through.y, 1e-4)) / max(distanceM, 1.0);
@@ -22,8 +29,7 @@ float litAir(vec3 dir, float distanceM, vec3 through) {
   for (int i = 0; i < kAirSamples; ++i) {
     float share = (float(i) + airDither) / float(kAirSamples);
     float t = absorbed > 1e-3 ? -log(max(1.0 - share * absorbed, 1e-4)) / perM : share * distanceM;
-    vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
-    lit += q.z >= topM ? 1.0 : exp(-kAirShadow * cloudDepthToSun(uLightVolume, q));
+    lit += litAirAt(dir, t);
   }
   return uAirUnderSheets * lit / float(kAirSamples);
 }

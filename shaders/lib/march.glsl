@@ -32,6 +32,14 @@ uniform int uHits;                // WELKIN_HITS
 uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
 #endif
 
+// A march of segments of a ray, one behind the other (WELKIN_SEGMENTS): none steps beyond its end, and cloud at its beginning is cloud from
+// there on.
+#ifdef WELKIN_SEGMENTS
+#define WELKIN_WITHIN(step) min(step, stretch.y - stretch.x)
+#else
+#define WELKIN_WITHIN(step) (step)
+#endif
+
 const int kSurfaceHalvings = 3;   // of the step in which a surface was met
 
 // The phase functions of the first scattering along a ray, 1/sr.
@@ -129,7 +137,7 @@ void meetSplats(float distanceM, inout MarchState state) {
 void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases phases, float cosSun, AroundClouds around, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
-  t += max(uStepNearM, uStepShare * t) * (0.02 + dither.x);
+  t += WELKIN_WITHIN(max(uStepNearM, uStepShare * t)) * (0.02 + dither.x);
   float lastClear = stretch.x;  // a place in front of the surface
   int fine = 0;                 // short steps to go before stepping far again
   bool entering = true;         // the next sample in cloud is the first behind a surface
@@ -147,7 +155,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
         p = vec3(0.0, 0.0, uEyeM) + dir * t;
         q = cloudPosition(p, uEarthRadiusM);
         detail = clamp(2.0 - 6.0 * t * pixelRad / 40.0, 0.0, 1.0);
-        shortStep = max(uStepNearM, uStepShare * t);
+        shortStep = WELKIN_WITHIN(max(uStepNearM, uStepShare * t));
         clearM = clearanceInBand(band, q, detail, surfaces);
         if (clearM < 0.0) break;
         lastClear = t;
@@ -156,7 +164,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
       }
       if (clearM >= 0.0) break;
       point = cloudsAtSurfaces(band, q, detail, surfaces);
-      if (point.inside) shortStep = max(shortStep, point.stepM);
+      if (point.inside) shortStep = WELKIN_WITHIN(max(shortStep, point.stepM));
       if (point.extinction <= 0.0) {
         lastClear = t;
         t += fine > 0 ? shortStep : clamp(point.clearM, shortStep, uStepLong * shortStep);
@@ -192,6 +200,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
           lastClear = middle;
         }
       }
+#ifdef WELKIN_SEGMENTS
+      if (lastClear == stretch.x) t = stretch.x;
+#endif
       entering = false;
       skinStep = 0.5 / point.extinction;
     }
@@ -199,6 +210,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     meetSplats(t, state);
 #endif
     float stepM = min(shortStep, skinStep);
+#ifdef WELKIN_SEGMENTS
+    stepM = min(stepM, stretch.y - t);
+#endif
     skinStep *= 2.0;
     float through = exp(-point.extinction * stepM);
     float share = state.transmittance * (1.0 - through);
@@ -232,13 +246,17 @@ struct SheetSeen {
   vec3 way;
 };
 
-// Its luminance as it arrives, air and all.
+// Its luminance there.
+vec3 ownLightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
+  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(seen.hit.p, uEarthRadiusM)));
+  return sheetLuminance(seen.sheet, WELKIN_SHEET_TIER(seen.sheet), seen.hit, seen.texel, seen.way, sun, phases.droplets, cosSun, dir.z);
+}
+
+// As it arrives, air and all.
 vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
   vec3 inscatter, through;
   aerial(dir, seen.hit.distanceM, inscatter, through);
-  float sun = exp(-cloudDepthToSun(uLightVolume, cloudPosition(seen.hit.p, uEarthRadiusM)));
-  vec3 light = sheetLuminance(seen.sheet, WELKIN_SHEET_TIER(seen.sheet), seen.hit, seen.texel, seen.way, sun, phases.droplets, cosSun, dir.z);
-  return light * through + inscatter;
+  return ownLightOfSheet(seen, dir, phases, cosSun) * through + inscatter;
 }
 #endif
 
@@ -250,9 +268,8 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
 #define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0)
 #endif
 
-CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
-  float cosSun = dot(dir, uKeyDirection);
-  AroundClouds around = aroundClouds(dir);
+// Of droplets and of ice.
+FirstPhases cloudPhases(vec3 dir, float cosSun) {
   FirstPhases phases;
   phases.droplets = phaseDroplet(cosSun, uDroplets);
   phases.ice = mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45);
@@ -263,6 +280,13 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   vec2 at = vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5);
   phases.beyondFit = vec3(textureLod(uMieDroplets, at, 0.0)) - phases.droplets;
 #endif
+  return phases;
+}
+
+CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
+  float cosSun = dot(dir, uKeyDirection);
+  AroundClouds around = aroundClouds(dir);
+  FirstPhases phases = cloudPhases(dir, cosSun);
 #ifdef WELKIN_SHEETS
   MarchState state = WELKIN_MARCH_BEGIN;
   vec2 stretch;

@@ -4,6 +4,13 @@
 #include <epoxy/gl.h>
 
 namespace welkin::testing {
+namespace {
+
+bool hasImages() {
+  return epoxy_is_desktop_gl() && epoxy_gl_version() >= 42;
+}
+
+}  // namespace
 
 struct ForeignEngine::Objects {
   GLuint vertexArray = 0, buffer = 0, sampler = 0, plane = 0, volume = 0, framebuffer = 0;
@@ -41,6 +48,8 @@ ForeignEngine::~ForeignEngine() {
   glBlendEquation(GL_FUNC_ADD);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  if (hasImages())
+    for (const GLuint unit : {0u, 1u}) glBindImageTexture(unit, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
   glActiveTexture(GL_TEXTURE0);
 }
 
@@ -69,6 +78,10 @@ void ForeignEngine::restore() const {
   glBindTexture(GL_TEXTURE_2D, o.plane);
   glBindTexture(GL_TEXTURE_3D, o.volume);
   glBindSampler(3, o.sampler);
+  if (hasImages()) {
+    glBindImageTexture(0, o.plane, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA8);
+    glBindImageTexture(1, o.plane, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
+  }
 }
 
 std::map<std::string, std::string> ForeignEngine::state() const {
@@ -112,6 +125,13 @@ std::map<std::string, std::string> ForeignEngine::state() const {
     ask((unit + " sampler").c_str(), GL_SAMPLER_BINDING, 1);
   }
   glActiveTexture(static_cast<GLenum>(active));
+  for (GLuint i = 0; hasImages() && i < 2; ++i)
+    for (const GLenum what : {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_ACCESS,
+                              GL_IMAGE_BINDING_FORMAT}) {
+      GLint value = 0;
+      glGetIntegeri_v(what, i, &value);
+      state["image " + std::to_string(i) + " " + std::to_string(what)] = std::to_string(value);
+    }
   return state;
 }
 

@@ -41,6 +41,10 @@ void FullscreenTriangle::draw(const Program& program, const Target& target,
   glBindVertexArray(0);
 }
 
+bool canCompute() {
+  return epoxy_is_desktop_gl() && epoxy_gl_version() >= 43;
+}
+
 void bindImage(int unit, const Texture& texture, Access access) {
   constexpr GLenum kAccess[] = {GL_READ_ONLY, GL_WRITE_ONLY, GL_READ_WRITE};
   glBindImageTexture(static_cast<GLuint>(unit), texture.id(), 0, texture.target() == GL_TEXTURE_3D, 0,

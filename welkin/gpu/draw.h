@@ -60,7 +60,8 @@ class FullscreenTriangle {
   unsigned vertexArray_ = 0;  // empty, but core profiles want one
 };
 
-// Compute, where Context::hasCompute().
+// Compute, where Context::hasCompute(), or this of a context that somebody else made.
+bool canCompute();
 enum class Access { kRead, kWrite, kReadWrite };
 // `layout(binding = unit)` of an image uniform; volumes are bound whole.
 void bindImage(int unit, const Texture& texture, Access access);

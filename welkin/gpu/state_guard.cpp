@@ -19,6 +19,12 @@ int integer(GLenum name) {
   return value[0];
 }
 
+int integerOf(GLenum name, int unit) {
+  GLint value = 0;
+  glGetIntegeri_v(name, static_cast<GLuint>(unit), &value);
+  return value;
+}
+
 void enable(GLenum name, bool on) {
   on ? glEnable(name) : glDisable(name);
 }
@@ -61,6 +67,11 @@ StateGuard::StateGuard() {
                  integer(GL_TEXTURE_BINDING_CUBE_MAP), integer(GL_SAMPLER_BINDING)};
     glBindSampler(static_cast<GLuint>(i), 0);
   }
+  hasImages_ = epoxy_is_desktop_gl() && epoxy_gl_version() >= 42;
+  for (int i = 0; hasImages_ && i < kImageUnits; ++i)
+    images_[i] = {integerOf(GL_IMAGE_BINDING_NAME, i),    integerOf(GL_IMAGE_BINDING_LEVEL, i),
+                  integerOf(GL_IMAGE_BINDING_LAYERED, i), integerOf(GL_IMAGE_BINDING_LAYER, i),
+                  integerOf(GL_IMAGE_BINDING_ACCESS, i),  integerOf(GL_IMAGE_BINDING_FORMAT, i)};
 
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
@@ -79,6 +90,12 @@ StateGuard::~StateGuard() {
     glBindSampler(static_cast<GLuint>(i), static_cast<GLuint>(unit.sampler));
   }
   glActiveTexture(static_cast<GLenum>(activeTexture_));
+  for (int i = 0; hasImages_ && i < kImageUnits; ++i) {
+    const auto& image = images_[i];
+    glBindImageTexture(static_cast<GLuint>(i), static_cast<GLuint>(image.texture), image.level,
+                       static_cast<GLboolean>(image.layered), image.layer, static_cast<GLenum>(image.access),
+                       static_cast<GLenum>(image.format));
+  }
   enable(GL_TEXTURE_CUBE_MAP_SEAMLESS, seamless_);
   for (std::size_t i = 0; i < std::size(kSwitches); ++i) enable(kSwitches[i], enabled_[i]);
   glColorMask(colourMask_[0], colourMask_[1], colourMask_[2], colourMask_[3]);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "welkin/gpu/state_guard.h"
+#include "welkin/render/air_volume_pass.h"
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/live_splats.h"
 #include "welkin/render/live_volumes.h"
@@ -73,9 +74,12 @@ struct LiveSky::Impl {
   std::optional<CloudTextures> clouds;  // whose placement the ground's pattern comes from
   std::optional<SkyBoxTexture> box;     // in the place of the clear sky
   std::vector<ThinLayer> sheets;        // from the ground up
-  std::optional<LiveVolumes> volumes;   // once there are any
-  std::optional<LiveSplats> splats;     // the same
-  Others others;                        // what the state has
+  std::optional<LiveVolumes> volumes;   // once there are any, or an air volume
+  std::optional<AirVolumePass> airPass;
+  bool volumesKnow = false;          // the scene,
+  bool airKnows = false;             // too
+  std::optional<LiveSplats> splats;  // the same
+  Others others;                     // what the state has
   std::vector<shading::VolumeInSky> volumesInSky;
 
   // Kept for their memory.
@@ -145,6 +149,7 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
   state = next;
   if (same) return;
   others = there;
+  volumesKnow = airKnows = false;
   volumesInSky.clear();
   sheets.clear();
   sheets = makeThinLayers(state->scene, state->weather, state->clouds->earthRadiusM());
@@ -161,6 +166,7 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
   volumesInSky = shading::volumesIn(*state);
   if (!volumes) volumes.emplace();
   volumes->change(*state, sheets);
+  volumesKnow = true;
   const shading::Uniforms light = volumes->lightUniforms();
   for (gpu::Program& p : backdrops()) setUniforms(p, light);
   if (box) setUniforms(boxBackdrop(), light);
@@ -330,6 +336,28 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
     m.drawSheets(view, parts, target, options);
   }
   if (options.flare > 0.0f) m.drawFlare(parts, target, options);
+}
+
+const AirVolume& LiveSky::airVolume(const shading::View& view, const AirVolumeOptions& options) {
+  checkAirVolume(options);
+  Impl& m = *impl_;
+  const gpu::StateGuard guard;
+  if (!m.volumesKnow) {
+    if (!m.volumes) m.volumes.emplace();
+    m.volumes->change(*m.state, m.sheets);
+    m.volumesKnow = true;
+  }
+  if (!m.airPass) m.airPass.emplace();
+  if (!m.airKnows) m.airPass->change(*m.volumes, *m.state);
+  m.airKnows = true;
+  const shading::ViewParts parts = shading::partsOf(view, options.height);
+  m.volumes->needLight(*m.state, *m.clouds, parts);
+  gpu::Program& p = m.airPass->program(options);
+  setUniforms(p, m.skyUniforms);
+  m.volumes->setView(p, *m.state, m.sheets, parts);
+  m.clouds->bind(p);
+  m.tables.bind(p);
+  return m.airPass->fill(options);
 }
 
 }  // namespace welkin::render

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "welkin/gpu/draw.h"
+#include "welkin/render/air_volume.h"
 #include "welkin/render/flare_pass.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/shading/view.h"
@@ -52,6 +53,13 @@ class LiveSky {
 
   // Draws all of it over the target, far to near, as linear Rec. 709. After update().
   void draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options = {});
+
+  // The air and the clouds in front of what the engine draws itself, by distance: for its glass, water and
+  // particles (render/air_volume.h). After update(), before or after draw(). Valid until the next call for
+  // the same options.view, or with another scene. The first call in a scene compiles; later ones of the same
+  // size make no OpenGL objects. Clouds are lit as in the last draw() of view 0, where that was near.
+  // Throws ParameterError for sizes, distances or a scale out of range, GpuError.
+  const AirVolume& airVolume(const shading::View& view, const AirVolumeOptions& options = {});
 
   const scene::SkyState& state() const;
 

@@ -52,11 +52,6 @@ bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
          a.rayScale == b.rayScale;
 }
 
-shading::ShaderDefines withDroplets(shading::ShaderDefines defines, const scene::SkyState& state) {
-  if (state.scene.droplets == optics::DropletModel::kMie) defines.emplace_back("WELKIN_MIE", "1");
-  return defines;
-}
-
 }  // namespace
 
 LiveVolumes::LiveVolumes()
@@ -82,9 +77,9 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
   // The order of an eye above all clouds has that of every other eye in it: what lies behind the eye is not
   // met.
   constexpr double kAboveAll = 1e6;
-  shading::Uniforms order;
+  order_.clear();
   if (count == 0) {
-    marching_ = &marches_.with(withDroplets(shading::marchDefines(layout_, kAboveAll), state));
+    defines_ = shading::marchDefines(layout_, kAboveAll);
   } else {
     std::vector<shading::SheetOnRay> onRay;
     for (const ThinLayer& sheet : sheets) {
@@ -97,18 +92,22 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
                        {},
                        1.0f});
     }
-    marching_ = &marches_.with(withDroplets(shading::sheetDefines(layout_, onRay, kAboveAll), state));
-    order = shading::sheetUniforms(layout_, onRay, {}, kAboveAll);
+    defines_ = shading::sheetDefines(layout_, onRay, kAboveAll);
+    order_ = shading::sheetUniforms(layout_, onRay, {}, kAboveAll);
   }
-  gpu::Program& p = *marching_;
+  if (state.scene.droplets == optics::DropletModel::kMie) defines_.emplace_back("WELKIN_MIE", "1");
+  marching_ = &marches_.with(defines_);
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
   reach_ = 1.0f / (3.0f * (layout_.bands.empty() ? 1e-4f : settings.noise));
-  setUniforms(p, order);
+  setScene(*marching_, state);
+  setUniforms(resolve_, shading::lightVolumeUniforms(layout_));
+}
+
+void LiveVolumes::setScene(gpu::Program& p, const scene::SkyState& state) const {
+  setUniforms(p, order_);
   setUniforms(p, shading::cloudUniforms(state));
-  setUniforms(p, shading::marchUniforms(settings));
-  const shading::Uniforms volume = shading::lightVolumeUniforms(layout_);
-  setUniforms(p, volume);
-  setUniforms(resolve_, volume);
+  setUniforms(p, shading::marchUniforms(shading::marchSettings(state.scene.output.quality)));
+  setUniforms(p, shading::lightVolumeUniforms(layout_));
 }
 
 void LiveVolumes::update(const shading::Uniforms& skyUniforms) {
@@ -142,18 +141,27 @@ glm::vec2 LiveVolumes::lightShiftM(const scene::SkyState& state, const shading::
   return glm::vec2(glm::dvec2(parts.eyeM) - light_->centreM) - (driftOfBand(state, 0) - light_->driftM);
 }
 
+LiveVolumes::Swept LiveVolumes::wantedLight(const scene::SkyState& state, const shading::ViewParts& parts) {
+  shading::aimLightVolume(state, layout_);
+  return {state.secondsAfter,    glm::round(glm::dvec2(parts.eyeM) / kCentreGridM) * kCentreGridM,
+          driftOfBand(state, 0), state.litBySun,
+          layout_.line,          layout_.towardsSun};
+}
+
+bool LiveVolumes::leaps(const Swept& wanted, glm::dvec2 eyeM) const {
+  return !light_ || light_->bySun != wanted.bySun || std::abs(light_->seconds - wanted.seconds) > kLeapS ||
+         glm::distance(light_->centreM, eyeM) > kLeapM;
+}
+
+void LiveVolumes::needLight(const scene::SkyState& state, const CloudTextures& clouds,
+                            const shading::ViewParts& parts) {
+  if (leaps(wantedLight(state, parts), glm::dvec2(parts.eyeM))) keepLight(state, clouds, parts);
+}
+
 void LiveVolumes::keepLight(const scene::SkyState& state, const CloudTextures& clouds,
                             const shading::ViewParts& parts) {
-  shading::aimLightVolume(state, layout_);
-  const glm::dvec2 eyeM(parts.eyeM);
-  const Swept wanted{state.secondsAfter,    glm::round(eyeM / kCentreGridM) * kCentreGridM,
-                     driftOfBand(state, 0), state.litBySun,
-                     layout_.line,          layout_.towardsSun};
-  const auto leaps = [&](const Swept& s) {
-    return s.bySun != wanted.bySun || std::abs(s.seconds - wanted.seconds) > kLeapS ||
-           glm::distance(s.centreM, eyeM) > kLeapM;
-  };
-  const bool atOnce = !light_ || leaps(*light_);
+  const Swept wanted = wantedLight(state, parts);
+  const bool atOnce = leaps(wanted, glm::dvec2(parts.eyeM));
   if (atOnce) sweeping_.reset();
   if (!sweeping_) {
     if (light_ == wanted) return;
@@ -177,9 +185,8 @@ void LiveVolumes::setLight(gpu::Program& p, const scene::SkyState& state,
   p.bind("uLightVolume", lightVolume_.volume());
 }
 
-void LiveVolumes::setSheets(const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
-                            const shading::ViewParts& parts) {
-  gpu::Program& p = *marching_;
+void LiveVolumes::setSheets(gpu::Program& p, const scene::SkyState& state,
+                            const std::vector<ThinLayer>& sheets, const shading::ViewParts& parts) {
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const ThinLayer& sheet = sheets[i];
     const shading::SheetLook look = shading::lookOf(sheet.sheet, sheet.matter, state.secondsAfter, parts.eyeM,
@@ -203,21 +210,26 @@ void LiveVolumes::setSheets(const scene::SkyState& state, const std::vector<Thin
   p.set("uBandSky", bandSky_);
 }
 
+void LiveVolumes::setView(gpu::Program& p, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
+                          const shading::ViewParts& parts) {
+  shading::cloudLayerUniforms(state, glm::dvec2(parts.eyeM), layers_);
+  setUniforms(p, layers_);
+  setSheets(p, state, sheets, parts);
+  setLight(p, state, parts);
+  p.set("uEyeM", static_cast<float>(parts.eyeM.z));
+  p.set("uEnuFromCamera", parts.enuFromCamera);
+  p.set("uRayScale", parts.rayScale);
+  p.set("uPixelRad", parts.pixelRad);
+}
+
 void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,
                            const std::vector<ThinLayer>& sheets, const shading::ViewParts& parts, int width,
                            int height) {
   gpu::Program& p = *marching_;
-  shading::cloudLayerUniforms(state, glm::dvec2(parts.eyeM), layers_);
-  setUniforms(p, layers_);
-  setSheets(state, sheets, parts);
-  setLight(p, state, parts);
+  setView(p, state, sheets, parts);
   const int round = m.frame / kFramesInRound;
   const glm::ivec2 cell = kOrder[static_cast<std::size_t>(m.frame % kFramesInRound)];
-  p.set("uEyeM", static_cast<float>(parts.eyeM.z));
-  p.set("uEnuFromCamera", parts.enuFromCamera);
-  p.set("uRayScale", parts.rayScale);
   p.set("uSizePx", glm::vec2(width, height));
-  p.set("uPixelRad", parts.pixelRad);
   p.set("uBlock", static_cast<float>(kBlock));
   p.set("uCellPx", glm::vec2(cell) + 0.5f + jitterPx(round));
   p.set("uJitterStep", jitterStep(round));

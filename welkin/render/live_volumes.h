@@ -52,6 +52,16 @@ class LiveVolumes {
   // Draws it over the target. After march() of the same view.
   void show(std::size_t view, const gpu::Target& target, float scale);
 
+  // For other marches through the same: what to compile in, what stays while the scene does, and what changes
+  // with the instant and the eye (lib/march.glsl but for the sky's uniforms, and uEyeM, uEnuFromCamera,
+  // uRayScale, uPixelRad).
+  const shading::ShaderDefines& defines() const { return defines_; }
+  void setScene(gpu::Program& program, const scene::SkyState& state) const;
+  void setView(gpu::Program& program, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
+               const shading::ViewParts& parts);
+  // Sweeps the light volume where there is none, or none that fits the instant and the eye.
+  void needLight(const scene::SkyState& state, const CloudTextures& clouds, const shading::ViewParts& parts);
+
   // The middle of their heights.
   double heightM() const {
     return layout_.bands.empty()
@@ -92,10 +102,12 @@ class LiveVolumes {
   };
 
   static Memory makeMemory(int width, int height, std::size_t bands);
+  Swept wantedLight(const scene::SkyState& state, const shading::ViewParts& parts);
+  bool leaps(const Swept& wanted, glm::dvec2 eyeM) const;
   void keepLight(const scene::SkyState& state, const CloudTextures& clouds, const shading::ViewParts& parts);
   glm::vec2 driftOfBand(const scene::SkyState& state, std::size_t band) const;
   glm::vec2 lightShiftM(const scene::SkyState& state, const shading::ViewParts& parts) const;
-  void setSheets(const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
+  void setSheets(gpu::Program& program, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
                  const shading::ViewParts& parts);
   void setMarch(const Memory& memory, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
                 const shading::ViewParts& parts, int width, int height);
@@ -111,6 +123,9 @@ class LiveVolumes {
   shading::LightVolumeLayout layout_;
   float reach_ = 1.0f;
   std::vector<std::unique_ptr<Memory>> memories_;
+
+  shading::ShaderDefines defines_;
+  shading::Uniforms order_;  // of sheets among bands
 
   // Kept for their memory.
   shading::Uniforms layers_;

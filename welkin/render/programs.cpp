@@ -11,6 +11,11 @@ gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shadin
       shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
 }
 
+gpu::Program computeProgram(std::string_view entry, std::span<const shading::ShaderDefine> defines) {
+  return gpu::Program::compute(
+      shading::assembleShader(entry, shading::ShaderDialect::kGl430Compute, defines));
+}
+
 gpu::Program& ProgramVariants::with(const shading::ShaderDefines& defines) {
   gpu::Program& program = programs_[defines];
   if (program.id() == 0) program = fullscreenProgram(fragment_, defines);

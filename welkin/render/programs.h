@@ -16,6 +16,9 @@ namespace welkin::render {
 gpu::Program fullscreenProgram(std::string_view fragment,
                                std::span<const shading::ShaderDefine> defines = {});
 
+// A compute pass, where gpu::canCompute(). Throws GpuError.
+gpu::Program computeProgram(std::string_view entry, std::span<const shading::ShaderDefine> defines = {});
+
 // A full-screen pass with variants; each is made when first asked for, and kept.
 class ProgramVariants {
  public:
