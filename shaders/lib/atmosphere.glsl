@@ -183,7 +183,7 @@ WELKIN_FN AtmosphereBeams atmosphereBeams(Atmosphere a, sampler2D transmittanceL
   vec4 table = textureLod(transmittanceLut, atmosphereTransmittanceUv(a, h, max(mu, horizon)), 0.0f);
   vec3 straight = vec3(table) * seen;
   vec3 peak = kHazePeakWeight * a.aerosolScattering * (a.aerosolScaleHeightM * table.w);
-  return AtmosphereBeams(straight, straight * (exp(peak) - vec3(1.0f)));
+  return AtmosphereBeams(straight, straight * (exp(min(peak, vec3(80.0f))) - vec3(1.0f)));  // finite in fog, too
 }
 
 // Transmittance from h to space towards a light at mu.

@@ -182,6 +182,34 @@ TEST(SkyTracer, AClearRayleighSkyIsThatOfTheTables) {
   EXPECT_LT(all, 0.03);
 }
 
+// Haze of 40 km of visibility, whose coarse particles scatter forward time and again: from near the sun to
+// opposite it.
+TEST(SkyTracer, AHazySkyIsThatOfTheTables) {
+  scene::Scene s = testing::clearScene(25.0);
+  s.output.sunDisc = false;
+  const scene::SkyState state = scene::buildSky(s, 0.0);
+  const SkyTracer tracer(state, {});
+  const glm::dvec3 sun(state.lights[0].direction);
+  double all = 0.0;
+  constexpr double kAzimuths[] = {15.0, 50.0, 110.0, 180.0};
+  for (const double azimuth : kAzimuths) {
+    double traced = 0.0, tables = 0.0, squares = 0.0;
+    for (const double elevation : {6.0, 16.0, 45.0}) {
+      const double a = std::atan2(sun.y, sun.x) + radians(azimuth), c = std::cos(radians(elevation));
+      const glm::dvec3 way(c * std::cos(a), c * std::sin(a), std::sin(radians(elevation)));
+      const Estimate e = meanTowards(tracer, way, 5000);
+      traced += e.value;
+      squares += e.error * e.error;
+      tables += luminanceOf(
+          glm::dvec3(state.atmosphere->skyLuminance(s.camera.eyeM, glm::vec3(way), state.lights)));
+    }
+    EXPECT_LT(std::sqrt(squares), 0.015 * traced);
+    EXPECT_NEAR(tables / traced, 1.0, 0.05) << azimuth << " degrees from the sun";
+    all += std::abs(tables / traced - 1.0) / std::size(kAzimuths);
+  }
+  EXPECT_LT(all, 0.03);
+}
+
 // Through cloud so thin that once is all that light is scattered, from next to the sun to far from it.
 TEST(SkyTracer, ThinCloudScattersOnce) {
   scene::Scene s = testing::cloudyScene(60.0, {Genus::kStratus}, 8.0);

@@ -206,6 +206,20 @@ TEST(Energy, NothingIsLostInAConservativeAtmosphere) {
   }
 }
 
+// From the densest fog on there is light in every direction, and a number everywhere.
+TEST(Haze, FogIsNeitherBlackNorInfinite) {
+  const std::vector<Light> sun = {{glm::normalize(glm::vec3(1.0f, 0.0f, 0.3f)), glm::vec3(100e3f)}};
+  for (const double visibility : {10.0, 50.0, 200.0, 1000.0}) {
+    const Atmosphere air({}, visibility, 0.0, glm::vec3(0.2f));
+    for (const glm::vec3 way : {sun[0].direction, glm::vec3(0, 0, 1), glm::vec3(-1, 0, 0)}) {
+      const float seen = luminance(air.skyLuminance(2.0, way, sun));
+      EXPECT_TRUE(std::isfinite(seen)) << visibility;
+      EXPECT_GE(seen, 0.0f) << visibility;
+      EXPECT_GT(seen, visibility < 200.0 ? 0.0f : 100.0f) << visibility;
+    }
+  }
+}
+
 TEST(Haze, FollowsKoschmieder) {
   for (double visibility : {500.0, 5e3, 40e3}) {
     const AtmosphereUniforms u = atmosphereUniforms({}, visibility, 400.0, glm::vec3(0.2f));
