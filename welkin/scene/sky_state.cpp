@@ -123,8 +123,7 @@ AmbientLight ambientLight(const SkyState& s) {
   // From above the clouds most of the air in view is sunlit.
   const bool beneath = lowest && s.scene.camera.eyeM < lowest->baseM + 200.0;
   a.clearAir = beneath ? 1.0f - cover : 1.0f;
-  a.haze = 0.5f * a.skyOnGround / pi +
-           0.5f * a.ground;  // the sky fills most of what a droplet near the ground sees brightly
+  a.haze = hazeLuminance(a.skyOnGround, a.ground);
   addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), cover, a);
   return a;
 }

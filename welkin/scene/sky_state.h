@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
 #include "welkin/scene/metaballs.h"
@@ -33,6 +34,11 @@ struct AmbientLight {
   float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
   glm::vec3 haze{0};            // mean luminance about the eye where it does not, cd/m2
 };
+
+// Mean luminance about an eye in shaded air over the ground, cd/m2: as much sky as ground. skyOnGround: lux.
+inline glm::vec3 hazeLuminance(const glm::vec3& skyOnGround, const glm::vec3& ground) {
+  return 0.5f * (skyOnGround / static_cast<float>(kPi) + ground);
+}
 
 // Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it
 // takes milliseconds to compute: linearly, within half a hundredth at dusk.

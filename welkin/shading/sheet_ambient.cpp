@@ -172,7 +172,7 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
   for (std::size_t i = 0; i < sheets.size(); ++i)
     if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];
   a.clearAir *= a.airUnderSheets;
-  a.haze = 0.5f * a.skyOnGround / kPiF + 0.5f * a.ground;
+  a.haze = scene::hazeLuminance(a.skyOnGround, a.ground);
 }
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {
