@@ -148,8 +148,8 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
     middleThrough = farThrough;
   }
   column.luminance += state.luminance * middleThrough;
-  column.luminance += before * max(mix((nearThrough - middleThrough) * uHazeLuminance, middleLit - nearLit, lit), 0.0);
-  column.luminance += state.transmittance * max(mix((middleThrough - farThrough) * uHazeLuminance, farLit - middleLit, lit), 0.0);
+  column.luminance += before * max(airBetween(nearLit, nearThrough, middleLit, middleThrough, lit), 0.0);
+  column.luminance += state.transmittance * max(airBetween(middleLit, middleThrough, farLit, farThrough, lit), 0.0);
   column.clouds = state.transmittance;
   return AirSlice(min(uScale * column.luminance, kHalfMost), column.clouds * farThrough);
 }

@@ -8,8 +8,8 @@
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
 
 const int kAirSamples = 4;
-// Light that clouds turn by a few degrees only lights the air behind them as if it had not been turned: half of what droplets scatter.
-const float kAirShadow = 0.5;
+// Light that clouds turn by some degrees only lights the air behind them as if it had not been turned: two thirds of what droplets scatter.
+const float kAirShadow = 0.33;
 
 bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
 

@@ -27,6 +27,7 @@ uniform sampler3D uAerialTransmittance;
 uniform float uClearAir;          // share of the lower air that the sun reaches
 uniform float uAirUnderSheets;    // of what thin sheets alone leave, the share of it
 uniform vec3 uHazeLuminance;      // mean luminance about the eye where it does not: what hazy air there tends to
+uniform vec3 uCloudGlow;          // by how much clouds make it brighter than it is without them
 
 // The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
 // day over some clouds and dusk over others.
@@ -41,8 +42,13 @@ void aerialLit(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) 
                    distanceM, inscatter, through);
 }
 
-// What it adds where the sun reaches a share of it: air in the shade of clouds is lit from all sides alike.
-vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return mix((1.0 - through) * uHazeLuminance, inscatter, lit); }
+// What it adds between two distances where the sun reaches a share of it: air in the shade of clouds is lit from all sides alike; in the sun,
+// it has the light of the clouds too.
+vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit) {
+  vec3 scattered = nearThrough - farThrough;
+  return mix(scattered * uHazeLuminance, farLit - nearLit + scattered * uCloudGlow, lit);
+}
+vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit); }
 
 // The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {

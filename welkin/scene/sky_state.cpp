@@ -16,6 +16,11 @@
 namespace welkin::scene {
 namespace {
 
+// The share of what droplets scatter that goes aside: kAirShadow of shaders/lib/air_shadows.glsl.
+constexpr double kTurnedAside = 0.33;
+// How many cells more a slanting ray comes by at most.
+constexpr double kMoreCells = 3.0;
+
 // Illuminance that a light sends through the air onto a horizontal plane at a height above the ground.
 glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Light& light, double heightM) {
   const double mu = light.direction.z;
@@ -24,19 +29,61 @@ glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Li
          static_cast<float>(mu);
 }
 
-// Mean share of diffuse light that passes the volumes: the clear part of each, and the cloudy part at the
-// Eddington transmittance of conservative cloud for diffuse light, 1 / (1 + 3/4 (1 - g) tau).
-double diffuseTransmittance(const Scene& scene, const weather::Weather& weather,
-                            const field::CloudField& clouds) {
-  double through = 1.0;
-  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    if (isSheet(scene, weather.layers[i])) continue;
-    const field::CloudLayer& layer = clouds.layers()[i];
-    const double tau = 0.4 * layer.extinction * (layer.topM - layer.baseM);
-    const double cloudy = 1.0 / (1.0 + 0.75 * (1.0 - optics::dropletAsymmetry()) * tau);
-    through *= 1.0 - weather.layers[i].oktas / kOktas * (1.0 - cloudy);
+// What the volumes do with light on its way to the ground, on average over the sky.
+struct CloudShade {
+  double slantCover =
+      0.0;             // share of the key light's rays that meet cloud between lowest base and highest top
+  double cover = 0.0;  // of the sky, [0, 1]
+
+  double diffuse = 1.0;  // share of diffuse light that passes
+  double aside = 0.0;    // of what clouds take from rays, the share that is turned by more than a few degrees
+  double lowM = 0.0, highM = 0.0;  // from the lowest base to the highest top; where light falls on them
+  double lightM = 0.0;
+  bool any = false;
+  // Of the light that clouds take, the share that leaves them downwards.
+  double downwards() const {
+    return cover > 0.0 ? std::clamp((diffuse - (1.0 - cover)) / cover, 0.0, 1.0) : 0.0;
   }
-  return through;
+};
+
+// sunHeight: sine of the elevation of the key light.
+CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const field::CloudField& clouds,
+                      double sunHeight) {
+  CloudShade shade;
+  double clear = 1.0, straight = 1.0, slantwise = 1.0;
+  bool all = true;
+  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
+    if (isSheet(scene, weather.layers[i])) {
+      all = false;
+      continue;
+    }
+    const field::CloudLayer& layer = clouds.layers()[i];
+    const double cover = weather.layers[i].oktas / kOktas, depth = layer.topM - layer.baseM;
+    const double tau = depth * layer.extinction;
+    // Conservative cloud by Eddington's solution for diffuse light, 1 / (1 + 3/4 (1 - g) tau), tau being that
+    // of its mean density. Of broken cloud half of the light leaves downwards, through its sides.
+    const double deck = 1.0 / (1.0 + 0.75 * (1.0 - optics::dropletAsymmetry()) * 0.4 * tau);
+    shade.diffuse *= 1.0 - cover * (1.0 - std::lerp(std::max(deck, 0.5), deck,
+                                                    std::pow(cover, 1.0 + depth / (layer.cellM / 12.0))));
+    clear *= 1.0 - cover;
+    // A slanting ray comes by more clouds, a cell being a twelfth of cellM; a few at most, as gaps are in
+    // line.
+    const double slant = std::sqrt(1.0 - sunHeight * sunHeight) / std::max(sunHeight, 0.05);
+    slantwise *= std::pow(1.0 - cover, std::min(0.5 * slant * depth / (layer.cellM / 12.0), kMoreCells));
+    straight *= 1.0 - cover * (1.0 - std::exp(-kTurnedAside * tau));
+    const bool deep = tau > 3.0;
+    if (!shade.any) shade.lowM = layer.baseM;
+    shade.lowM = std::min(shade.lowM, static_cast<double>(layer.baseM));
+    shade.highM = std::max(shade.highM, static_cast<double>(layer.topM));
+    if (deep)
+      shade.lightM = std::max(shade.lightM, cover >= 0.5 ? layer.topM : 0.5 * (layer.baseM + layer.topM));
+    shade.any = true;
+  }
+  shade.cover = all ? weather.requestedOktas / kOktas : 1.0 - clear;
+
+  shade.slantCover = 1.0 - (1.0 - shade.cover) * slantwise;
+  shade.aside = (1.0 - straight) / std::max(1.0 - clear, 1e-6);
+  return shade;
 }
 
 ClearSkyKey clearSkyKey(const SkyState& s, double atS) {
@@ -96,34 +143,36 @@ AmbientLight ambientLight(const SkyState& s) {
   const glm::vec3 skyOnGround = a.above.along[2];
   a.skyLow = skyOnGround / pi;
   a.skyHigh = a.aboveHigh.along[2] / pi;
-  const float through = static_cast<float>(diffuseTransmittance(s.scene, s.weather, *s.clouds));
-  // What falls on the clouds has not yet passed the air beneath their tops: the highest that are thick enough
-  // to scatter it all.
-  double topM = 0.0, clear = 1.0;
-  const weather::Layer* lowest = nullptr;
-  std::size_t volumes = 0;
-  for (const weather::Layer& layer : s.weather.layers) {
-    if (isSheet(s.scene, layer)) continue;
-    if (!lowest) lowest = &layer;
-    ++volumes;
-    clear *= 1.0 - layer.oktas / kOktas;
-    if (layer.oktas >= 4.0 && layer.extinctionPerM * (layer.topM - layer.baseM) > 3.0) topM = layer.topM;
-  }
+  const CloudShade shade =
+      cloudShade(s.scene, s.weather, *s.clouds, static_cast<double>(s.lights[0].direction.z));
   glm::vec3 direct(0.0f), onClouds(0.0f);
   for (const sky::Light& light : s.lights) {
     direct += horizontalIlluminance(atmosphere, light, 0.0);
-    onClouds += horizontalIlluminance(atmosphere, light, topM);
+    // What falls on the clouds has not yet passed the air beneath their tops.
+    onClouds += horizontalIlluminance(atmosphere, light, shade.lightM);
   }
+  const auto cover = static_cast<float>(shade.cover);
   // Direct light that clouds take from the ground comes back as diffuse light, as much as they let through.
-  const float cover = static_cast<float>(
-      volumes == s.weather.layers.size() ? s.weather.requestedOktas / kOktas : 1.0 - clear);
-  const float diffused = std::max(through - (1.0f - cover), 0.0f);
+  const float diffused = cover * static_cast<float>(shade.downwards()),
+              through = static_cast<float>(shade.diffuse);
+  const glm::vec3 albedo(s.scene.ground.albedo);
   a.skyOnGround = skyOnGround * through + onClouds * diffused;
-  a.ground = glm::vec3(s.scene.ground.albedo) / pi * (a.skyOnGround + direct * (1.0f - cover));
+  a.ground = albedo / pi * (a.skyOnGround + direct * (1.0f - cover));
   // From above the clouds most of the air in view is sunlit.
-  const bool beneath = lowest && s.scene.camera.eyeM < lowest->baseM + 200.0;
-  a.clearAir = beneath ? 1.0f - cover : 1.0f;
-  a.haze = hazeLuminance(a.skyOnGround, a.ground);
+  const double eyeM = s.scene.camera.eyeM;
+  a.clearAir = shade.any && eyeM < shade.lowM + 200.0 ? 1.0f - cover : 1.0f;
+  // Around the eye beneath the clouds, where they are overhead; and above, where they are in the place of the
+  // ground. What they turn by a few degrees only lights the air as it did before.
+  const float above = static_cast<float>(
+      shade.any ? std::clamp((eyeM - shade.lowM) / std::max(shade.highM - shade.lowM, 1.0), 0.0, 1.0) : 0.0);
+  const auto taken = static_cast<float>(shade.slantCover), down = static_cast<float>(shade.downwards()),
+             aside = static_cast<float>(shade.aside);
+  const glm::vec3 over =
+      hazeLuminance(skyOnGround, onClouds * (taken * aside * (1.0f - down)) / pi + a.ground * (1.0f - cover));
+  const glm::vec3 under = hazeLuminance(skyOnGround * through + onClouds * (taken * aside * down), a.ground);
+  a.haze = glm::mix(under, over, above);
+  const glm::vec3 none = hazeLuminance(skyOnGround, albedo / pi * (skyOnGround + direct));
+  a.cloudGlow = glm::max(a.haze - none, glm::vec3(0.0f));
   addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), cover, a);
   return a;
 }

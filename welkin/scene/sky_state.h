@@ -33,11 +33,14 @@ struct AmbientLight {
   float clearAir = 1.0f;        // share of the air beneath the clouds that the sun reaches
   float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
   glm::vec3 haze{0};            // mean luminance about the eye where it does not, cd/m2
+  glm::vec3 cloudGlow{0};       // by how much volumes make that brighter than it is under the clear sky
 };
 
-// Mean luminance about an eye in shaded air over the ground, cd/m2: as much sky as ground. skyOnGround: lux.
+// Of what hazy air takes from a ray, the share that it scatters.
+inline constexpr float kHazeScatters = 0.93f;
+// Luminance that shaded air tends to, cd/m2, in as much sky as ground. skyOnGround: lux.
 inline glm::vec3 hazeLuminance(const glm::vec3& skyOnGround, const glm::vec3& ground) {
-  return 0.5f * (skyOnGround / static_cast<float>(kPi) + ground);
+  return kHazeScatters * 0.5f * (skyOnGround / static_cast<float>(kPi) + ground);
 }
 
 // Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it

@@ -168,6 +168,7 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     a.below = share.y * state.ambient.below;
     a.belowHigh = share.y * state.ambient.belowHigh;
     a.clearAir = state.ambient.clearAir;
+    a.cloudGlow = state.ambient.cloudGlow * share;
   }
   for (std::size_t i = 0; i < sheets.size(); ++i)
     if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];

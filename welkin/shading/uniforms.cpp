@@ -108,6 +108,7 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uClearAir", state.ambient.clearAir);
   u.put("", "uAirUnderSheets", state.ambient.airUnderSheets);
   u.put("", "uHazeLuminance", state.ambient.haze);
+  u.put("", "uCloudGlow", state.ambient.cloudGlow);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 
   const optics::DropletPhase droplets =
