@@ -2,18 +2,22 @@
 // Examples for tools/fit_cloud_light.py: points that eyes see in the clouds of random skies, what the shader
 // knows there, and what the reference says is scattered there.
 //
-//   light_samples OUT.f32 SKIES POINTS PATHS SEED
+//   light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED
 //
-// Rows of kColumns float32 values are appended to OUT, POINTS from each of SKIES skies, PATHS paths each. No
-// sky of bench/truth is among them.
+// Rows of kColumns float32 values are appended to OUT, POINTS from each of SKIES random skies, PATHS paths
+// each. No sky of bench/truth is among them. Or POINTS that the camera of a scene with one layer sees: to say
+// where the fit is wrong; of each sky what the fit makes of it is printed.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
+#include <string_view>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/glsl.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
@@ -26,6 +30,7 @@
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/light_volume_pass.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/projector.h"
 #include "welkin/scene/scene_file.h"
 #include "welkin/shading/uniforms.h"
 
@@ -74,6 +79,12 @@ enum Column {
   kBehindFromSun,
   kBehindUp,
   kBehindDown,
+  kSurface,  // cloudSurface, sd; relative height in the layer; its depth, m, and extinction, 1/m
+  kHeight,
+  kDepth,
+  kLayerExtinction,
+  kPeakShare,  // of the phase function
+  kPeakG,
   kColumns
 };
 
@@ -141,6 +152,11 @@ struct Clouds {
     }
     return sum;
   }
+  // Of the first layer.
+  float surface(const glm::vec3& q) const {
+    const shared::sampler2D placement{&field.noise().placement, shared::Wrap::kRepeat, shared::Wrap::kRepeat};
+    return shared::cloudSurface(field.layers()[0], placement, q);
+  }
   glm::vec3 position(const glm::dvec3& p) const { return shared::cloudPosition(glm::vec3(p), earthRadius); }
   // Along [0, end) of a ray, up to `enough`, by steps that grow.
   double depth(const Ray& ray, double end, double enough) const {
@@ -177,17 +193,101 @@ scene::Scene randomScene(Random& random) {
   return s;
 }
 
+// A sky, and the lines of sight into it.
+struct Sky {
+  scene::SkyState state;
+  glm::dvec3 sun{0.0};
+  std::optional<scene::Projector> camera;  // none: eyes and views of all kinds
+
+  // From an eye into the clouds; the ray ends where there is ground.
+  Ray look(Random& r, double cloudTopM) const;
+};
+
 glm::dvec3 uniformDirection(Random& random) {
   const double z = 2.0 * unit(random) - 1.0, phi = 2.0 * kPi * unit(random), r = std::sqrt(1.0 - z * z);
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
+// Of any sun.
+Sky randomSky(Random& random) {
+  const scene::Scene scene = randomScene(random);
+  Sky sky{scene::buildSky(scene, 0.0), glm::dvec3(0.0), std::nullopt};
+  // Half of the suns are low.
+  const double sine =
+      unit(random) < 0.5 ? 0.03 + 0.97 * unit(random) : std::sin(radians(2.0 + 28.0 * unit(random)));
+  const double azimuth = 2.0 * kPi * unit(random);
+  sky.sun = {std::sqrt(1.0 - sine * sine) * std::cos(azimuth),
+             std::sqrt(1.0 - sine * sine) * std::sin(azimuth), sine};
+  sky.state.lights[0].direction = glm::vec3(sky.sun);
+  return sky;
+}
+
+Sky skyOf(const std::string& path) {
+  const scene::Scene scene = scene::readSceneFile(path).scene;
+  Sky sky{scene::buildSky(scene, scene.atS), glm::dvec3(0.0), std::nullopt};
+  if (sky.state.weather.layers.size() != 1)
+    throw ParameterError(fmt::format("{}: {} layers; expected one", path, sky.state.weather.layers.size()));
+  sky.sun = glm::normalize(glm::dvec3(sky.state.lights[0].direction));
+  sky.camera = scene::projectorOf(sky.state);
+  return sky;
+}
+
+Ray Sky::look(Random& r, double cloudTopM) const {
+  if (camera) {
+    glm::vec3 way(0.0f);
+    float pixelRad = 0.0f;
+    const scene::Output& out = state.scene.output;
+    const glm::vec2 px(static_cast<float>(unit(r) * static_cast<double>(out.width)),
+                       static_cast<float>(unit(r) * static_cast<double>(out.height)));
+    if (!scene::directionAt(*camera, px, way, pixelRad)) way = {0.0f, 0.0f, -1.0f};
+    return {{0.0, 0.0, state.scene.camera.eyeM}, glm::normalize(glm::dvec3(way))};
+  }
+  // Half of the eyes on the ground, the others up to above the clouds; a third of the looks near the sun.
+  const double eye = unit(r) < 0.5 ? 2.0 : unit(r) * 1.3 * cloudTopM;
+  glm::dvec3 view = uniformDirection(r);
+  if (unit(r) < 0.33) view = reference::turned(sun, 1.0 - 0.3 * unit(r), 2.0 * kPi * unit(r));
+  // Most look near the horizon, as cameras do.
+  else if (unit(r) < 0.8)
+    view = glm::normalize(glm::dvec3(view.x, view.y, 0.35 * view.z));
+  return {{0.0, 0.0, eye}, view};
+}
+
+// Of the points of a sky, on average.
+struct FitAgainstTruth {
+  double sunBias = 0.0;  // relative
+  double above = 0.0, trueAbove = 0.0;
+};
+FitAgainstTruth judge(const std::vector<float>& rows) {
+  double sun = 0.0, trueSun = 0.0, above = 0.0, trueAbove = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < rows.size(); i += kColumns) {
+    const float* r = &rows[i];
+    if (std::isnan(r[kBelow])) continue;
+    const shared::CloudScattering s =
+        shared::cloudScattering({r[kToSun], r[kFromSun], r[kUp], r[kDown]},
+                                {r[kCosSun],
+                                 r[kViewHeight],
+                                 r[kToEye],
+                                 r[kDistance],
+                                 {r[kBehindToSun], r[kBehindFromSun], r[kBehindUp], r[kBehindDown]}},
+                                {r[kIce], r[kCover], r[kSurface], r[kHeight], r[kDepth], r[kLayerExtinction]},
+                                {r[kPhase], {r[kPeakShare], r[kPeakG]}}, r[kSunHeight]);
+    sun += static_cast<double>(s.sun);
+    trueSun += static_cast<double>(r[kSun] + r[kDirect] * r[kPhase]);
+    above += static_cast<double>(s.shares.x);
+    trueAbove += static_cast<double>(r[kAbove]);
+    ++count;
+  }
+  return {sun / std::max(trueSun, 1e-30) - 1.0, above / std::max(count, 1.0),
+          trueAbove / std::max(count, 1.0)};
+}
+
 int run(int argc, char** argv) {
   if (argc != 6) {
-    fmt::print(stderr, "usage: light_samples OUT.f32 SKIES POINTS PATHS SEED\n");
+    fmt::print(stderr, "usage: light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED\n");
     return 2;
   }
-  const int skies = std::atoi(argv[2]), points = std::atoi(argv[3]), paths = std::atoi(argv[4]);
+  const bool ofScene = std::string_view(argv[2]).ends_with(".toml");
+  const int skies = ofScene ? 1 : std::atoi(argv[2]), points = std::atoi(argv[3]), paths = std::atoi(argv[4]);
   const auto seed = static_cast<std::uint64_t>(std::atoll(argv[5]));
   if (skies < 1 || points < 1 || paths < 1) {
     fmt::print(stderr, "light_samples: SKIES, POINTS and PATHS must be whole numbers from 1 on\n");
@@ -197,16 +297,10 @@ int run(int argc, char** argv) {
   render::LightVolumePass pass;
   for (int sky = 0; sky < skies; ++sky) {
     Random random(hashOf(seed, sky));
-    const scene::Scene scene = randomScene(random);
-    scene::SkyState state = scene::buildSky(scene, 0.0);
+    const Sky seen = ofScene ? skyOf(argv[2]) : randomSky(random);
+    const scene::SkyState& state = seen.state;
+    const glm::dvec3 sun = seen.sun;
     const weather::Layer& layer = state.weather.layers[0];
-    // Half of the suns are low.
-    const double sine =
-        unit(random) < 0.5 ? 0.03 + 0.97 * unit(random) : std::sin(radians(2.0 + 28.0 * unit(random)));
-    const double azimuth = 2.0 * kPi * unit(random);
-    const glm::dvec3 sun(std::sqrt(1.0 - sine * sine) * std::cos(azimuth),
-                         std::sqrt(1.0 - sine * sine) * std::sin(azimuth), sine);
-    state.lights[0].direction = glm::vec3(sun);
     LightVolume volume{shading::lightVolumeLayout(state), {}};
     const render::CloudTextures textures(state.clouds->sharedNoise());
     pass.draw(state, volume.layout, textures);
@@ -218,6 +312,8 @@ int run(int argc, char** argv) {
         reference::dropletPhase(scene::dropletDiameterUm(state.weather), reference::DropletModel::kFit);
     const auto crystals = reference::icePhase();
     const reference::CloudSource source(medium, sun, droplets, crystals);
+    const shared::PhasePeak peak = shared::dropletPeak(
+        shared::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather))));
     const Clouds clouds{*state.clouds, static_cast<float>(state.clouds->earthRadiusM())};
     const double earthTop = medium.grid()->highM();
 
@@ -226,24 +322,22 @@ int run(int argc, char** argv) {
       for (std::size_t i = begin; i < end; ++i) {
         Random r(hashOf(seed, sky, i, 7));
         for (int attempt = 0; attempt < 200; ++attempt) {
-          // Half of the eyes on the ground, the others up to above the clouds; a third of the looks near the
-          // sun.
-          const double eye = unit(r) < 0.5 ? 2.0 : unit(r) * 1.3 * earthTop;
-          glm::dvec3 view = uniformDirection(r);
-          if (unit(r) < 0.33) view = reference::turned(sun, 1.0 - 0.3 * unit(r), 2.0 * kPi * unit(r));
-          // Most look near the horizon, as cameras do.
-          else if (unit(r) < 0.8)
-            view = glm::normalize(glm::dvec3(view.x, view.y, 0.35 * view.z));
-          const Ray ray{{0.0, 0.0, eye}, view};
+          const Ray ray = seen.look(r, earthTop);
+          const glm::dvec3& view = ray.way;
           const double ground = medium.earth().toGround(ray, 40e3);
           const auto hit = medium.collide(ray, std::min(ground, 40e3), r);
           if (!hit) continue;
           const glm::dvec3 p = ray.at(hit->t);
           const glm::vec3 q = clouds.position(p);
           float* row = &rows[i * kColumns];
+          // A sixth of the eyes are in the cloud, a free path before the point.
+          double distance = hit->t;
+          if (!seen.camera && i % 6 == 5) {
+            Random ahead(hashOf(seed, sky, i, 8));
+            if (const auto before = medium.collide({p, -view}, distance, ahead)) distance = before->t;
+          }
           const auto pixelRad = static_cast<float>(4e-4 * std::exp2(4.0 * unit(r)));
-          const float detail =
-              std::clamp(2.0f - 6.0f * static_cast<float>(hit->t) * pixelRad / 40.0f, 0.0f, 1.0f);
+          const float detail = shared::cloudDetailSeen(static_cast<float>(distance), pixelRad);
           // As cloudSource() in lib/march.glsl has it.
           constexpr int kSamples = 4;  // the qualities have 2 to 5
           const float reach = 200.0f, extinction = clouds.extinction(q, detail);
@@ -264,7 +358,7 @@ int run(int argc, char** argv) {
           row[kFromSun] = here.z;
           row[kUp] = here.y;
           row[kDown] = here.w;
-          row[kToEye] = static_cast<float>(clouds.depth({p, -view}, hit->t, 8.0));
+          row[kToEye] = static_cast<float>(clouds.depth({p, -view}, distance, 8.0));
           row[kCosSun] = static_cast<float>(glm::dot(view, sun));
           row[kViewHeight] = static_cast<float>(view.z);
           row[kSunHeight] = static_cast<float>(sun.z);
@@ -277,6 +371,13 @@ int run(int argc, char** argv) {
           row[kBehindFromSun] = behind.z;
           row[kBehindUp] = behind.y;
           row[kBehindDown] = behind.w;
+          const field::CloudLayer& body = state.clouds->layers()[0];
+          row[kSurface] = clouds.surface(q);
+          row[kDepth] = body.topM - body.baseM;
+          row[kHeight] = (q.z - body.baseM) / row[kDepth];
+          row[kLayerExtinction] = body.extinction;
+          row[kPeakShare] = hit->ice ? shared::kIcePeakShare : peak.share;
+          row[kPeakG] = hit->ice ? shared::kIcePeakG : peak.g;
           double lit = 0.0;
           int above = 0, below = 0;
           for (int k = 0; k < paths; ++k) {
@@ -291,7 +392,7 @@ int run(int argc, char** argv) {
           row[kPaths] = static_cast<float>(paths);
           row[kGenus] = static_cast<float>(layer.genus);
           row[kSky] = static_cast<float>(seed * 100000 + static_cast<std::uint64_t>(sky));
-          row[kDistance] = static_cast<float>(hit->t);
+          row[kDistance] = static_cast<float>(distance);
           break;
         }
       }
@@ -305,8 +406,11 @@ int run(int argc, char** argv) {
       fmt::print(stderr, "light_samples: {} could not be written\n", argv[1]);
       return 1;
     }
-    fmt::print("{} of {}: {} {} oktas, sun {:.3f}\n", sky + 1, skies,
-               kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)], layer.oktas, sine);
+    const FitAgainstTruth fit = judge(rows);
+    fmt::print(
+        "{} of {}: {} {} oktas, sun {:.3f}: fit {:+.1f} % of the sun's light, {:.3f} of {:.3f} from above\n",
+        sky + 1, skies, kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)], layer.oktas, sun.z,
+        100.0 * fit.sunBias, fit.above, fit.trueAbove);
     std::fflush(stdout);
   }
   return 0;

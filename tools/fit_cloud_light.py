@@ -6,7 +6,7 @@
     tools/fit_cloud_light.py EXAMPLES.f32... [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
 
 Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
-used. The network: sixteen numbers, two layers of sixteen x / (1 + |x|), two numbers: the logarithm of a factor of
+used. The network: twenty numbers, two layers of twenty x / (1 + |x|), two numbers: the logarithm of a factor of
 the light scattered more than once, and of the odds of light from above. Least squares of relative errors, by Adam
 (D. P. Kingma and J. Ba 2015, "Adam: A Method for Stochastic Optimization"). The examples are noisy means over a
 few paths; their noise has no bias, and evens out.
@@ -16,11 +16,12 @@ import argparse
 import numpy as np
 
 COLUMNS = ("to_sun from_sun up down to_eye cos_sun view_height sun_height ice cover direct phase sun above below "
-           "paths genus sky distance behind_to_sun behind_from_sun behind_up behind_down").split()
+           "paths genus sky distance behind_to_sun behind_from_sun behind_up behind_down surface height depth layer_extinction "
+           "peak_share peak_g").split()
 SIMILARITY = 1 - 0.86  # the constants of shaders/lib/cloud_light.glsl
-WIDTH = 16
+WIDTH = 20
 LEAST = 0.01           # 1/sr: what errors are relative to where clouds are dark
-OUTLIER = 20.0         # times the expected light: where a mean of a few paths is cut
+OUTLIER = 40.0         # times the expected light: where a mean of a few paths is cut
 
 
 def read(files):
@@ -52,6 +53,13 @@ def closed_form(d):
     return np.maximum(forward + diffuse, 0) + 1e-5, (down + 2 / 3) / (4 / 3 + up + down)
 
 
+def peaks(d):
+    """cloudPeakSource()."""
+    turned = d["peak_share"] * d["to_sun"]
+    lobe = henyey_greenstein(d["cos_sun"], d["peak_g"] ** (2 + 0.6 * turned))
+    return d["peak_share"] * lobe * (np.exp(turned - d["to_sun"]) - np.exp(-d["to_sun"]))
+
+
 def inputs(d):
     """As cloudScattering() of shaders/lib/cloud_scattering.glsl has them."""
     def log(x):
@@ -59,12 +67,13 @@ def inputs(d):
     return np.stack([log(d["to_sun"]), log(d["from_sun"]), log(d["up"]), log(d["down"]), log(d["to_eye"]), d["cos_sun"],
                      d["view_height"], d["sun_height"], np.sqrt(np.maximum(0.5 - 0.5 * d["cos_sun"], 0)), d["ice"],
                      log(d["distance"] / 1000), d["cover"], log(d["behind_to_sun"]), log(d["behind_from_sun"]),
-                     log(d["behind_up"]), log(d["behind_down"])], 1).astype(np.float32)
+                     log(d["behind_up"]), log(d["behind_down"]), 0.5 * np.clip(d["surface"], -2, 4), d["height"],
+                     0.75 * log(0.01 * d["depth"]), 1.5 * log(300 * d["layer_extinction"])], 1).astype(np.float32)
 
 
 class Network:
     def __init__(self, rng):
-        sizes = [16, WIDTH, WIDTH, 2]
+        sizes = [20, WIDTH, WIDTH, 2]
         self.weights = [rng.normal(0, a ** -0.5, (a, b)).astype(np.float32) for a, b in zip(sizes, sizes[1:])]
         self.weights[-1] *= 0.1
         self.biases = [np.zeros(b, np.float32) for b in sizes[1:]]
@@ -108,7 +117,9 @@ def fit(d, rows, steps, seed=0, batch=4096, rate=8e-3):
     x = inputs(d)
     sun, above = (v.astype(np.float32) for v in closed_form(d))
     first = np.minimum(d["direct"] * d["phase"], 2).astype(np.float32)
-    true_sun, true_above = d["sun"].astype(np.float32), d["above"].astype(np.float32)
+    of_peaks = peaks(d)
+    true_sun, true_above = (d["sun"] - of_peaks).astype(np.float32), d["above"].astype(np.float32)
+    first += np.minimum(of_peaks, 2).astype(np.float32)
     network = Network(rng)
     for step in range(steps):
         i = rows[rng.integers(0, len(rows), batch)]
@@ -124,6 +135,7 @@ def report(name, d, rows, network):
     """Bias of each sky's mean: of the light of the sun, and of the share from above."""
     sun, above = closed_form(d)
     s, a = predicted(network, inputs(d), sun, above)
+    s += peaks(d)
     sky = d["sky"].astype(int)
     rows = rows[d["cos_sun"][rows] < 0.93]  # nearer to the sun the noise is larger than the errors
     before, after, shares, noise = [], [], [], []
@@ -166,7 +178,7 @@ def glsl(network, note):
     body = "\n".join(lines)
     return f"""// SPDX-License-Identifier: Apache-2.0
 // Written by tools/fit_cloud_light.py, which says what it is; {note}.
-WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2, vec4 x3) {{
+WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2, vec4 x3, vec4 x4) {{
 {body}
 }}
 """

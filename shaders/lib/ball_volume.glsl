@@ -9,6 +9,7 @@ uniform vec2 uBallCells;
 uniform vec3 uBallTiles;          // points on the side of a shape's grid; columns and rows of shapes
 
 const int kBallTableWidth = 192;
+const vec4 kBallPlace = vec4(0.5, 0.5, 1000.0, 0.05);  // a cumulus's (CloudPoint), which they are
 
 vec4 ballTexel(int i) { return texelFetch(uBallTable, ivec2(i % kBallTableWidth, i / kBallTableWidth), 0); }
 
@@ -55,6 +56,7 @@ void addBalls(vec3 q, inout CloudPoint point) {
     point.inside = true;
     point.stepM = min(point.stepM, size.w);
     point.extinction += extinction;
+    point.place += extinction * kBallPlace;
     if (extinction <= 0.0) point.clearM = min(point.clearM, there.y / size.z);
   }
 }

@@ -28,6 +28,14 @@ struct CloudDepths {
   float down;
 };
 
+// Light that the narrow peak of the phase function has turned more than once, and nothing else has: the sun's aureole. Orders of scattering
+// along a line, n of them with the chance of Poisson's law; the lobe of so many has the mean cosine g^n. cosSun as below.
+WELKIN_FN float cloudPeakSource(float toSun, float cosSun, PhasePeak peak) {
+  float turned = peak.share * toSun;
+  float orders = 2.0f + 0.6f * turned;
+  return peak.share * phaseHenyeyGreenstein(cosSun, pow(peak.g, orders)) * (exp(turned - toSun) - exp(-toSun));
+}
+
 // What others use in the place of cloudSunSource() below, to be compared with it (`welkin bench truth`): the first scattering alone;
 // and octaves of it, each with half the extinction, half the light and half the mean cosine of the one before, eight of them as usual:
 // M. Wrenninge, C. Kulla and V. Lundqvist 2013, "Oz: The Great and Volumetric".

@@ -15,6 +15,22 @@ struct CloudView {
 
 WELKIN_CONST float kBehindM = 300.0f;
 
+// What kind of cloud it is in.
+struct CloudPlace {
+  float ice;         // the share of it
+  float cover;       // of the sky by the layer, [0, 1]
+  float surface;     // cloudSurface, sd
+  float height;      // in the layer, [0, 1]
+  float depthM;      // of the layer
+  float extinction;  // of the layer, 1/m
+};
+
+// How it turns light.
+struct CloudPhase {
+  float first;       // the first scattering's phase function in the direction of view, 1/sr
+  PhasePeak peak;
+};
+
 // What it does with light: of the sun, scattered radiance per unit extinction and unit illuminance, 1/sr; and the shares of light from
 // above (x) and from below (y), which sum to 1, as clouds absorb nothing.
 struct CloudScattering {
@@ -24,21 +40,23 @@ struct CloudScattering {
 
 WELKIN_CONST float kMostCorrection = 3.0f;  // of logarithms
 
-// ice: the share of it. cover: of the sky by the layer, [0, 1]. phase: the first scattering's, 1/sr. sunHeight: sine of its elevation.
-WELKIN_FN CloudScattering cloudScattering(CloudDepths d, CloudView view, float ice, float cover, float phase, float sunHeight) {
+// sunHeight: sine of the sun's elevation.
+WELKIN_FN CloudScattering cloudScattering(CloudDepths d, CloudView view, CloudPlace place, CloudPhase phase, float sunHeight) {
   vec2 shares = cloudSkyShares(d);
-  float sun = cloudSunSource(d, phase, view.cosSun, view.height, sunHeight);
+  float sun = cloudSunSource(d, phase.first, view.cosSun, view.height, sunHeight);
 #if defined(WELKIN_SINGLE_SCATTERING) || defined(WELKIN_OCTAVES_OF_SCATTERING)
   return CloudScattering(sun, shares);
 #else
-  float direct = phase * exp(-d.toSun);
+  float direct = phase.first * exp(-d.toSun);
   float others = max(sun - direct, 0.0f) + 1e-5f;
   vec2 logs = cloudLightFit(
       log(1.0f + vec4(d.toSun, d.fromSun, d.up, d.down)) / 3.0f,
       vec4(log(1.0f + view.toEye) / 3.0f, view.cosSun, view.height, sunHeight),
-      vec4(sqrt(max(0.5f - 0.5f * view.cosSun, 0.0f)), ice, log(1.0f + 0.001f * view.distanceM) / 3.0f, cover),
-      log(1.0f + vec4(view.behind.toSun, view.behind.fromSun, view.behind.up, view.behind.down)) / 3.0f);
+      vec4(sqrt(max(0.5f - 0.5f * view.cosSun, 0.0f)), place.ice, log(1.0f + 0.001f * view.distanceM) / 3.0f, place.cover),
+      log(1.0f + vec4(view.behind.toSun, view.behind.fromSun, view.behind.up, view.behind.down)) / 3.0f,
+      vec4(0.5f * clamp(place.surface, -2.0f, 4.0f), place.height, 0.25f * log(1.0f + 0.01f * place.depthM),
+           0.5f * log(1.0f + 300.0f * place.extinction)));
   float above = shares.x / (shares.x + shares.y * exp(clamp(-logs.y, -kMostCorrection, kMostCorrection)));
-  return CloudScattering(direct + others * exp(clamp(logs.x, -kMostCorrection, kMostCorrection)), vec2(above, 1.0f - above));
+  return CloudScattering(direct + cloudPeakSource(d.toSun, view.cosSun, phase.peak) + others * exp(clamp(logs.x, -kMostCorrection, kMostCorrection)), vec2(above, 1.0f - above));
 #endif
 }

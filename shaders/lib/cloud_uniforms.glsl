@@ -25,6 +25,7 @@ struct CloudPoint {
   float extinction;  // 1/m
   float ice;         // the part of it that is ice
   float cover;       // it times its layers' cover of the sky
+  vec4 place;        // it times cloudSurface, relative height, depth (m) and extinction (1/m) of its layers
   float clearM;      // where there is none: a distance within which it stays so
   float stepM;       // the longest step that resolves the layers here
   bool inside;       // between base and top of any layer
@@ -36,12 +37,12 @@ struct CloudPoint {
 
 // First half of the question: the surfaces from the placement alone. Returns a distance within which there is no cloud, or -1 if the
 // 3D noises have to be asked.
-float clearanceInBand(int band, vec3 q, float detail, out CloudSurfaces surfaces) {
+float clearanceInBand(int band, vec3 q, out CloudSurfaces surfaces) {
   float clearM = 1e9;
 #define WELKIN_CLEARANCE(i, b)                                     \
   if (band == b) {                                                 \
     surfaces.s[i] = cloudSurface(uLayers[i], uPlacement, q);       \
-    clearM = min(clearM, cloudClearance(uLayers[i], q, surfaces.s[i], detail)); \
+    clearM = min(clearM, cloudClearance(uLayers[i], q, surfaces.s[i])); \
   }
   WELKIN_EACH_LAYER(WELKIN_CLEARANCE)
 #ifdef WELKIN_BALLS
@@ -57,6 +58,8 @@ void addLayer(CloudLayer layer, float ice, float cover, vec3 q, float surface, f
   point.extinction += extinction;
   point.ice += extinction * ice;
   point.cover += extinction * cover;
+  float depthM = layer.topM - layer.baseM;
+  point.place += extinction * vec4(surface, (q.z - layer.baseM) / depthM, depthM, layer.extinction);
   point.clearM = min(point.clearM, clearM);
   point.stepM = min(point.stepM, cloudStepM(layer));
   point.inside = true;
@@ -64,7 +67,7 @@ void addLayer(CloudLayer layer, float ice, float cover, vec3 q, float surface, f
 
 // Second half: what is there.
 CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfaces) {
-  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, 1e9, 1e9, false);
+  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false);
 #define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
 #ifdef WELKIN_BALLS
@@ -76,6 +79,6 @@ CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfac
 // Extinction in one go.
 float cloudExtinctionInBand(int band, vec3 q, float detail) {
   CloudSurfaces surfaces;
-  clearanceInBand(band, q, detail, surfaces);
+  clearanceInBand(band, q, surfaces);
   return cloudsAtSurfaces(band, q, detail, surfaces).extinction;
 }

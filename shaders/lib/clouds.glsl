@@ -66,11 +66,11 @@ WELKIN_FN float cloudShapeAmount(CloudLayer layer, float s, float h) {
 
 // Where the noises cannot make cloud, s being cloudSurface there: a distance, metres, within which it stays so (an estimate with a
 // margin, 0 or more). Elsewhere -1.
-WELKIN_FN float cloudClearance(CloudLayer layer, vec3 q, float s, float detail) {
+WELKIN_FN float cloudClearance(CloudLayer layer, vec3 q, float s) {
   if (s <= -1e3f) return 0.0f;  // beyond base and top nothing is known
   float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
   // The noises seldom exceed two and a half deviations.
-  if (s + 2.5f * cloudShapeAmount(layer, s, h) + 2.0f * layer.detailAmount * detail > 0.0f) return -1.0f;
+  if (s + 2.5f * cloudShapeAmount(layer, s, h) + 2.0f * layer.detailAmount > 0.0f) return -1.0f;
   // Nearer the surface the noise comes back and meets the ray half way.
   return max(-s - 0.9f * layer.shapeAmount, 0.0f) * layer.reachM;
 }
@@ -81,25 +81,36 @@ WELKIN_FN float cloudBodyExtinction(CloudLayer layer, float h) {
   return layer.extinction * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
 }
 
+// How much of the small noise is seen at a distance, [0, 1]: bumps of some 40 m fade out when they are a few pixels wide.
+WELKIN_FN float cloudDetailSeen(float distanceM, float pixelRad) { return clamp(2.0f - 4.0f * distanceM * pixelRad / 40.0f, 0.0f, 1.0f); }
+
+// By how much a surface without the small noise lies farther out, as of bumps along a ray those that stand out are met; the less the softer
+// the edge is that they are on. amount: the noise's deviation.
+WELKIN_FN float cloudHiddenBumps(float amount, float edge) {
+  float squared = amount * amount;
+  return 0.95f * amount * squared / (squared + 0.6f * edge * edge);
+}
+
 // Extinction at q, s being cloudSurface there. `detail` in [0, 1] fades the small noise out where it would be smaller than a pixel or
-// a step. clearM: where the density is 0, a distance within which it stays so; else 0.
+// a step: clouds are seen no smaller for that. clearM: where the density is 0, a distance within which it stays so; else 0.
 WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, sampler3D detailNoise, vec3 q, float s, float detail,
                                     WELKIN_OUT(float) clearM) {
-  clearM = cloudClearance(layer, q, s, detail);
+  clearM = cloudClearance(layer, q, s);
   if (clearM >= 0.0f) return 0.0f;
   clearM = 0.0f;
   float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
   vec2 p = cloudPatternPosition(layer, q, h);
   vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z);
   s += cloudShapeAmount(layer, s, h) * textureLod(shapeNoise, (p3 - layer.shapeShiftM) / layer.shapeM, 0.0f).x;
-  float bound = s + 2.0f * layer.detailAmount * detail;
+  float bound = s + 2.0f * layer.detailAmount;
   if (bound <= 0.0f) {
     clearM = -bound * layer.reachM * 0.5f;
     return 0.0f;
   }
-  if (detail > 0.0f && layer.detailAmount > 0.0f && s < layer.edge + 2.0f * layer.detailAmount) {
-    float n = textureLod(detailNoise, (p3 - layer.detailShiftM) / layer.detailM, 0.0f).x;
-    s += detail * layer.detailAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h)) * n;
+  if (layer.detailAmount > 0.0f && s < layer.edge + 2.0f * layer.detailAmount) {
+    float amount = layer.detailAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h));
+    s += (1.0f - detail) * cloudHiddenBumps(amount, layer.edge);
+    if (detail > 0.0f) s += detail * amount * textureLod(detailNoise, (p3 - layer.detailShiftM) / layer.detailM, 0.0f).x;
   }
   if (s <= 0.0f) return 0.0f;
   return cloudBodyExtinction(layer, h) * clamp(s / layer.edge, 0.0f, 1.0f);

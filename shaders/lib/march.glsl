@@ -88,9 +88,12 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   CloudDepths depths = cloudDepthsAt(uLightVolume, q);
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float ice = point.ice / point.extinction;
-  float phase = mix(phases.droplets, phases.ice, ice);
+  PhasePeak droplets = dropletPeak(uDroplets);
+  CloudPhase phase = CloudPhase(mix(phases.droplets, phases.ice, ice),
+                                PhasePeak(mix(droplets.share, kIcePeakShare, ice), mix(droplets.g, kIcePeakG, ice)));
+  vec4 place = point.place / point.extinction;
   CloudScattering scattered =
-      cloudScattering(depths, view, ice, point.cover / point.extinction, phase, uKeyDirection.z);
+      cloudScattering(depths, view, CloudPlace(ice, point.cover / point.extinction, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
   sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
@@ -154,9 +157,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
         ++state.steps;
         p = vec3(0.0, 0.0, uEyeM) + dir * t;
         q = cloudPosition(p, uEarthRadiusM);
-        detail = clamp(2.0 - 6.0 * t * pixelRad / 40.0, 0.0, 1.0);
+        detail = cloudDetailSeen(t, pixelRad);
         shortStep = WELKIN_WITHIN(max(uStepNearM, uStepShare * t));
-        clearM = clearanceInBand(band, q, detail, surfaces);
+        clearM = clearanceInBand(band, q, surfaces);
         if (clearM < 0.0) break;
         lastClear = t;
         t += fine > 0 ? shortStep : clamp(clearM, shortStep, uStepLong * shortStep);
@@ -183,28 +186,29 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     if (!hit) break;
     fine = max(fine, 2);
     if (entering) {
-      // The surface lies in the last step.
-      for (int i = 0; i < kSurfaceHalvings; ++i) {
-        float middle = 0.5 * (lastClear + t);
-        CloudSurfaces surfaces;
-        vec3 pm = vec3(0.0, 0.0, uEyeM) + dir * middle;
-        vec3 qm = cloudPosition(pm, uEarthRadiusM);
-        clearanceInBand(band, qm, detail, surfaces);
-        CloudPoint there = cloudsAtSurfaces(band, qm, detail, surfaces);
-        if (there.extinction > 0.0) {
-          t = middle;
-          p = pm;
-          q = qm;
-          point = there;
-        } else {
-          lastClear = middle;
+      skinStep = 0.5 / point.extinction;
+      // The surface of dense cloud lies in the last step. Thin cloud is left where it was met: a place of chance in it, which stands for a step
+      // of it.
+      if (skinStep < shortStep) {
+        for (int i = 0; i < kSurfaceHalvings; ++i) {
+          float middle = 0.5 * (lastClear + t);
+          CloudSurfaces surfaces;
+          vec3 pm = vec3(0.0, 0.0, uEyeM) + dir * middle;
+          vec3 qm = cloudPosition(pm, uEarthRadiusM);
+          clearanceInBand(band, qm, surfaces);
+          CloudPoint there = cloudsAtSurfaces(band, qm, detail, surfaces);
+          if (there.extinction > 0.0) {
+            t = middle;
+            p = pm;
+            q = qm;
+            point = there;
+          } else {
+            lastClear = middle;
+          }
         }
       }
-#ifdef WELKIN_SEGMENTS
       if (lastClear == stretch.x) t = stretch.x;
-#endif
       entering = false;
-      skinStep = 0.5 / point.extinction;
     }
 #ifdef WELKIN_SPLATS
     meetSplats(t, state);
@@ -214,11 +218,15 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     stepM = min(stepM, stretch.y - t);
 #endif
     skinStep *= 2.0;
-    float through = exp(-point.extinction * stepM);
+    float depth = point.extinction * stepM;
+    float through = exp(-depth);
     float share = state.transmittance * (1.0 - through);
-    state.luminance += share * cloudSource(band, p, q, point, detail, phases,
-                                           CloudView(cosSun, dir.z, -log(state.transmittance), t,
-                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), around, dither.y);
+    // What is seen of a step lies on average this far into it.
+    float into = stepM * (depth > 0.01 ? 1.0 / depth - through / (1.0 - through) : 0.5);
+    vec3 pSeen = p + dir * into, qSeen = cloudPosition(pSeen, uEarthRadiusM);
+    CloudView view = CloudView(cosSun, dir.z, point.extinction * into - log(state.transmittance), t,
+                               cloudDepthsAt(uLightVolume, qSeen + kBehindM * dir));
+    state.luminance += share * cloudSource(band, pSeen, qSeen, point, detail, phases, view, around, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
@@ -272,7 +280,7 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
 FirstPhases cloudPhases(vec3 dir, float cosSun) {
   FirstPhases phases;
   phases.droplets = phaseDroplet(cosSun, uDroplets);
-  phases.ice = mix(phaseHenyeyGreenstein(cosSun, 0.92), phaseHenyeyGreenstein(cosSun, 0.55), 0.45);
+  phases.ice = phaseIce(cosSun);
 #ifdef WELKIN_MIE
   // The angle by its tangent, as cosines know little of those near the glory; ends are middles of texels.
   float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;

@@ -67,6 +67,21 @@ WELKIN_FN float phaseDroplet(float c, DropletPhase p) {
   return mix(phaseHenyeyGreenstein(c, p.gHg), phaseDraine(c, p.gDraine, p.alpha), p.wDraine);
 }
 
+// The narrow forward peak of a phase function, a Henyey-Greenstein lobe: its share of the scattered light, and its mean cosine.
+struct PhasePeak {
+  float share;
+  float g;
+};
+WELKIN_FN PhasePeak dropletPeak(DropletPhase p) { return PhasePeak(1.0f - p.wDraine, p.gHg); }
+
+// Ice crystals of many shapes and sizes: two lobes, without halos.
+WELKIN_CONST float kIcePeakG = 0.92f;
+WELKIN_CONST float kIcePeakShare = 0.55f;
+WELKIN_CONST float kIceWideG = 0.55f;
+WELKIN_FN float phaseIce(float c) {
+  return mix(phaseHenyeyGreenstein(c, kIceWideG), phaseHenyeyGreenstein(c, kIcePeakG), kIcePeakShare);
+}
+
 WELKIN_FN float dropletMeanCosine(DropletPhase p) {
   return mix(p.gHg, draineMeanCosine(p.gDraine, p.alpha), p.wDraine);
 }

@@ -31,6 +31,9 @@ float phaseCornetteShanks(float c, float g) {
 float phaseHaze(float c, float g) {
   return shared::phaseHaze(c, g);
 }
+float phaseIce(float c) {
+  return shared::phaseIce(c);
+}
 float draineMeanCosine(float g, float alpha) {
   return shared::draineMeanCosine(g, alpha);
 }

@@ -16,6 +16,7 @@ float phaseHenyeyGreenstein(float c, float g);
 float phaseDraine(float c, float g, float alpha);
 float phaseCornetteShanks(float c, float g);
 float phaseHaze(float c, float g);  // two lobes; g: mean cosine, up to 0.9
+float phaseIce(float c);            // crystals of many shapes, without halos
 
 // How cloud droplets scatter: by the fit below, or by Mie's theory, with fogbow and glory.
 enum class DropletModel { kFit, kMie };

@@ -21,10 +21,7 @@ PhaseSampler dropletPhase(double diameterUm, DropletModel model) {
 }
 
 PhaseSampler icePhase() {
-  return PhaseSampler::tabulated([](double c) {
-    const auto x = static_cast<float>(c);
-    return 0.55 * optics::phaseHenyeyGreenstein(x, 0.92f) + 0.45 * optics::phaseHenyeyGreenstein(x, 0.55f);
-  });
+  return PhaseSampler::tabulated([](double c) { return optics::phaseIce(static_cast<float>(c)); });
 }
 
 PhaseSampler dropletPeak(const PhaseSampler& droplets) {

@@ -7,11 +7,18 @@
 
 #include "test_layers.h"
 #include "welkin/core/error.h"
+#include "welkin/core/glsl.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
 
 namespace welkin::field {
 namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+using field::CloudLayer;
+#include "shaders/lib/clouds.glsl"
+}  // namespace shared
 
 TEST(CloudField, IsEmptyOutsideItsLayers) {
   const CloudField field(testNoise(), {cumulusLike(-4.0f)}, 0.0);
@@ -36,6 +43,40 @@ TEST(CloudField, NeverExceedsWhatTheBodyMayHave) {
   }
   EXPECT_GT(greatest, 0.9f * layer.extinction);
   EXPECT_LE(greatest, 1.31f * layer.extinction);
+}
+
+// Seen from afar, without the small noise, clouds cover as much of the sky as they do with it.
+TEST(CloudField, HidesAsMuchFromAfar) {
+  CloudLayer layer = cumulusLike(0.6f);
+  const std::shared_ptr<const CloudNoise> noise = testNoise();
+  const shared::sampler2D placement{&noise->placement, shared::Wrap::kRepeat, shared::Wrap::kRepeat};
+  const shared::sampler3D shape{&noise->shape, shared::Wrap::kRepeat},
+      detailNoise{&noise->detail, shared::Wrap::kRepeat};
+  for (const float edge : {0.06f, 0.12f, 0.4f}) {
+    layer.edge = edge;
+    double hidden[2] = {0.0, 0.0};
+    Random random(5);
+    constexpr int kRays = 1500;
+    for (int ray = 0; ray < kRays; ++ray) {
+      const glm::vec3 from(9e4f * random.uniform(), 9e4f * random.uniform(), layer.baseM);
+      const glm::vec3 way = glm::normalize(glm::vec3(1.0f, 0.3f, 0.6f));
+      for (const int with : {0, 1}) {
+        double depth = 0.0;
+        constexpr float kStep = 15.0f;
+        for (float t = 0.5f * kStep; from.z + way.z * t < layer.topM; t += kStep) {
+          const glm::vec3 q = from + way * t;
+          float clear = 0.0f;
+          depth += static_cast<double>(kStep *
+                                       shared::cloudExtinctionFrom(layer, shape, detailNoise, q,
+                                                                   shared::cloudSurface(layer, placement, q),
+                                                                   static_cast<float>(with), clear));
+        }
+        hidden[with] += (1.0 - std::exp(-depth)) / kRays;
+      }
+    }
+    EXPECT_GT(hidden[1], 0.1);
+    EXPECT_NEAR(hidden[0] / hidden[1], 1.0, 0.03) << "edge " << edge;
+  }
 }
 
 // Moving the pattern with the wind is moving the eye against it.

@@ -70,6 +70,12 @@ TEST(Phase, HazeHasItsMeanCosine) {
   }
 }
 
+TEST(Phase, IceScattersAllOnce) {
+  const Moments m = moments([](float c) { return phaseIce(c); });
+  EXPECT_NEAR(m.norm, 1.0, 2e-4);
+  EXPECT_NEAR(m.meanCosine, 0.55 * 0.92 + 0.45 * 0.55, 2e-4);
+}
+
 TEST(Phase, DropletsHaveTheirMeanCosine) {
   for (float d : {5.0f, 10.0f, 20.0f, 50.0f}) {
     const DropletPhase p = dropletPhase(d);

@@ -85,6 +85,26 @@ TEST(CloudLight, ThinCloudScattersOnce) {
   }
 }
 
+// Light turned by peaks alone is the sum over its orders, each by Poisson's law along the line to the sun.
+TEST(CloudLight, PeaksAreTheSumOfTheirOrders) {
+  for (const PhasePeak peak : {PhasePeak{0.45f, 0.994f}, PhasePeak{0.55f, 0.92f}})
+    for (const float toSun : {0.1f, 1.0f, 3.0f})
+      for (const double degrees : {0.5, 2.0, 8.0, 30.0}) {
+        const auto c = static_cast<float>(std::cos(degrees * kPi / 180.0));
+        double wanted = 0.0, chance = std::exp(-static_cast<double>(toSun)), turned = 1.0;
+        for (int order = 1; order < 30; ++order) {
+          turned *= static_cast<double>(peak.share);
+          if (order > 1)
+            wanted +=
+                turned * chance *
+                static_cast<double>(phaseHenyeyGreenstein(c, std::pow(peak.g, static_cast<float>(order))));
+          chance *= static_cast<double>(toSun) / order;
+        }
+        EXPECT_NEAR(static_cast<double>(cloudPeakSource(toSun, c, peak)) / wanted, 1.0, 0.25)
+            << peak.g << " " << toSun << " " << degrees;
+      }
+}
+
 // Below the depth at which the sun's beam is spent, light only becomes less on its way to the dark side.
 TEST(CloudLight, LightDecaysTowardsTheDarkSide) {
   float last = 1e9f;
