@@ -5,11 +5,10 @@
 #include "lib/splat_ray.glsl"
 
 layout(location = 0) in vec4 iBall;       // centre from the eye, radius, m
-layout(location = 1) in vec4 iMatter;     // extinction at the centre, 1/m; the tile of its light
+layout(location = 1) in vec4 iMatter;     // extinction at the centre, 1/m; the tile of its light: texel at its corner, x, y; texels on its side
 
 uniform mat4 uClipFromEnu;                // directions east-north-up from the eye to clip space
-uniform vec3 uTiles;                      // texels on a tile's side; tiles that there is room for, across and up
-uniform float uTilesInRow;
+uniform vec2 uPerTexel;
 
 out vec3 vRay;                            // direction of view: x, y across, z towards the centre
 out vec2 vLight;                          // texture coordinate
@@ -23,8 +22,7 @@ void main() {
   gl_Position = f.share < kSplatClose
                     ? uClipFromEnu * vec4(f.centreM * (f.right * vRay.x + f.up * vRay.y + f.forward), 1.0)
                     : vec4(corner, 0.0, 1.0);
-  vec2 tile = vec2(mod(iMatter.y, uTilesInRow), floor(iMatter.y / uTilesInRow));
-  vLight = (tile + 0.5 + 0.5 * corner * (1.0 - 1.0 / uTiles.x)) / uTiles.yz;
+  vLight = (iMatter.yz + 0.5 * iMatter.w + 0.5 * corner * (iMatter.w - 1.0)) * uPerTexel;
   vBall = vec3(1.0 / f.share, iMatter.x * iBall.w, iBall.w);
   vFrame = mat3(f.right, f.up, f.forward);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light pass: a ball in one slice of a stack.
+// Light pass: a ball in four slices of a stack.
 
 layout(location = 0) in vec4 iPlace;  // texel of its centre, x, y; texels of its radius; optical depth of a radius
-layout(location = 1) in vec4 iSlice;  // begin and end of the slice, radii from the centre; the tile that is drawn to: 256 * left + side, lower; 0: no bounds
+layout(location = 1) in vec4 iSlice;  // end of the first slice, radii from the centre; its thickness; the tile that is drawn to: 256 * left + side, lower; 0: no bounds
 
 uniform vec2 uPerTexel;
 
 out vec2 vAcross;                     // radii from the centre
-flat out vec3 vBall;                  // optical depth of a radius; begin and end of the slice
+flat out vec3 vBall;                  // optical depth of a radius; end of the first slice, its thickness
 
 void main() {
   vAcross = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;

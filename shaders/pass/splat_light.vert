@@ -2,13 +2,13 @@
 // Light of a ball, at a few places in it: the tile of a texture.
 
 layout(location = 0) in vec4 iBall;     // centre from the eye, radius, m
-layout(location = 1) in vec4 iMatter;   // extinction at the centre, 1/m; the tile; phase function; albedo
+layout(location = 1) in vec4 iMatter;   // extinction at the centre, 1/m; phase function and how much the stack from the eye counts; albedo
 layout(location = 2) in vec4 iCloud;    // centre of its cloud from the eye; half side of the stack from the eye, 0: there is none
 layout(location = 3) in vec4 iHalves;   // half sides and half depths of the stacks towards sun and zenith, m
 layout(location = 4) in vec4 iBlock;    // x, y, z: of the stack towards the sun, the others beside it; w: half depth of that from the eye
+layout(location = 5) in vec4 iTile;     // texel at the corner of its tile, x, y; texels on its side
 
-uniform vec3 uTiles;                    // texels on a tile's side; tiles that there is room for, across and up
-uniform float uTilesInRow;
+uniform vec2 uPerTexel;
 
 flat out vec4 vBall;
 flat out vec4 vMatter;                  // extinction, phase function, albedo
@@ -19,12 +19,11 @@ out vec2 vCorner;                       // in the tile's first and last texels' 
 
 void main() {
   vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
-  vec2 tile = vec2(mod(iMatter.y, uTilesInRow), floor(iMatter.y / uTilesInRow));
   vBall = iBall;
-  vMatter = vec4(iMatter.x, iMatter.z, iMatter.w, 0.0);
+  vMatter = iMatter;
   vCloud = iCloud;
   vHalves = iHalves;
   vBlock = iBlock;
-  vCorner = (corner * 2.0 - 1.0) * (uTiles.x / (uTiles.x - 1.0));
-  gl_Position = vec4((tile + corner) / uTiles.yz * 2.0 - 1.0, 0.0, 1.0);
+  vCorner = (corner * 2.0 - 1.0) * (iTile.z / (iTile.z - 1.0));
+  gl_Position = vec4((iTile.xy + corner * iTile.z) * uPerTexel * 2.0 - 1.0, 0.0, 1.0);
 }

@@ -21,10 +21,15 @@ bool LiveSplats::in(const scene::SkyState& state) {
 void LiveSplats::change(const scene::SkyState& state) {
   state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
                       balls_);
-  balls_.balls.reserve(kRoom * balls_.balls.size());
-  balls_.filled.reserve(kRoom * balls_.filled.size());
-  balls_.clouds.reserve(kRoom * balls_.clouds.size());
+  state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
+                      shadowBalls_, scene::MetaballDetail::kAsShadow);
+  for (scene::CloudBalls* balls : {&balls_, &shadowBalls_}) {
+    balls->balls.reserve(kRoom * balls->balls.size());
+    balls->filled.reserve(kRoom * balls->filled.size());
+    balls->clouds.reserve(kRoom * balls->clouds.size());
+  }
   clouds_.reserve(kRoom * balls_.clouds.size());
+  shadowClouds_.reserve(kRoom * shadowBalls_.clouds.size());
   pass_.reserve(kRoom * balls_.clouds.size(), kRoom * balls_.balls.size());
   eyeM_.reset();
 }
@@ -38,14 +43,17 @@ void LiveSplats::lookFrom(const scene::SkyState& state, const glm::dvec3& eyeM) 
   if (eyeM_ == eyeM) return;
   eyeM_ = eyeM;
   state.metaballs->at(state.secondsAfter, eyeM, state.clouds->earthRadiusM(), balls_);
+  state.metaballs->at(state.secondsAfter, eyeM, state.clouds->earthRadiusM(), shadowBalls_,
+                      scene::MetaballDetail::kAsShadow);
   splatClouds(balls_, clouds_);
+  splatClouds(shadowBalls_, shadowClouds_);
   double low = 1e9, high = 0.0;
   for (const field::Metaball& b : balls_.balls) {
     low = std::min(low, b.centreM.z);
     high = std::max(high, b.centreM.z);
   }
   heightM_ = 0.5 * (std::max(low, 0.0) + high);  // of far ones, over the curved earth, the ground's
-  pass_.drawShadow(clouds_, eyeM);
+  pass_.drawShadow(shadowClouds_, eyeM);
 }
 
 void LiveSplats::draw(const shading::ViewParts& view, const SkyTextures& tables, const SplatTarget& to) {

@@ -32,8 +32,8 @@ class LiveSplats {
 
  private:
   SplatPass pass_{SplatDetail::kLive};
-  scene::CloudBalls balls_;
-  std::vector<SplatCloud> clouds_;
+  scene::CloudBalls balls_, shadowBalls_;
+  std::vector<SplatCloud> clouds_, shadowClouds_;
   std::optional<glm::dvec3> eyeM_;  // that they were found for
   double heightM_ = 0.0;
 };

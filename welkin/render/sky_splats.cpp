@@ -72,19 +72,24 @@ void splatClouds(const scene::CloudBalls& balls, std::vector<SplatCloud>& out) {
 }
 
 void SkySplats::update(const scene::SkyState& state) {
-  balls_.balls.clear();
-  balls_.clouds.clear();
-  if (state.scene.metaballsAs == scene::MetaballRender::kSplats)
-    state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
-                        balls_);
-  splatClouds(balls_, clouds_);
+  using scene::MetaballDetail;
+  for (const bool shadow : {false, true}) {
+    scene::CloudBalls& balls = shadow ? shadowBalls_ : balls_;
+    balls.balls.clear();
+    balls.clouds.clear();
+    if (state.scene.metaballsAs == scene::MetaballRender::kSplats)
+      state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM},
+                          state.clouds->earthRadiusM(), balls,
+                          shadow ? MetaballDetail::kAsShadow : MetaballDetail::kAsSeen);
+    splatClouds(balls, shadow ? shadowClouds_ : clouds_);
+  }
 }
 
 void SkySplats::draw(const scene::SkyState& state, const SkyTextures& tables, gpu::Program& program) {
   if (!pass_) pass_.emplace(SplatDetail::kStill);
   pass_->setSky(shading::skyUniforms(state), state.lights[0].direction);
   const double eyeM = state.scene.camera.eyeM;
-  pass_->drawShadow(clouds_, {0.0, 0.0, eyeM});
+  pass_->drawShadow(shadowClouds_, {0.0, 0.0, eyeM});
 
   const bool plane = state.scene.camera.projection == scene::Projection::kPerspective;
   const int side = facePx(state);

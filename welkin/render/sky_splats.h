@@ -31,8 +31,8 @@ class SkySplats {
   void bind(gpu::Program& program) const;
 
  private:
-  scene::CloudBalls balls_;
-  std::vector<SplatCloud> clouds_;
+  scene::CloudBalls balls_, shadowBalls_;
+  std::vector<SplatCloud> clouds_, shadowClouds_;
   std::optional<SplatPass> pass_;
   gpu::Texture2D light_, distance_;
   std::optional<gpu::Framebuffer> target_;

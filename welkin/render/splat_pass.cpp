@@ -19,9 +19,10 @@ namespace {
 struct StackSize {
   int sidePx = 0;
   int slices() const { return sidePx / 2; }
-  int columns() const { return sidePx > 32 ? 8 : 4; }
+  int fours() const { return (slices() + 3) / 4; }
+  int columns() const { return sidePx > 32 ? 4 : 2; }
   int width() const { return sidePx * columns(); }
-  int height() const { return sidePx * ((slices() + columns() - 1) / columns()); }
+  int height() const { return sidePx * ((fours() + columns() - 1) / columns()); }
 };
 // Stacks are the finer the larger a cloud is in view, without steps: the size that a stack takes of the
 // texture has steps, but of it as much is used as makes texels and slices so fine as they are to be.
@@ -39,8 +40,16 @@ constexpr double kEyeStackFrom = 1.15, kEyeStackAll = 1.6, kEyeStackPart = 0.4; 
 // How far clouds shade others: fading out over the last third of it.
 constexpr double kShadeReachM = 12000.0;
 
-constexpr int kTilePx = 4, kFineTilePx = 16, kTilesInRow = 256;
-constexpr double kMostFineTexels = 2e6;  // of all tiles together
+// A ball's light is sampled along as many rays as it needs by its size in view, on a square of so many a
+// side.
+struct Rays {
+  double perPx;     // of its radius beyond the first
+  int least, most;  // on the side
+  double texels;    // of all balls together, before the largest get fewer
+};
+constexpr Rays kLiveRays{1.0, 2, 4, 2e6}, kStillRays{2.0, 3, 16, 2e6};
+constexpr std::size_t kMostTilePx = 16;
+constexpr int kTilesWidthPx = 1024;
 constexpr int kShadowPx = 1024;
 
 // Floats of a ball in all slices of its three stacks and of those that it shades; few balls need more.
@@ -129,7 +138,6 @@ struct SplatPass::Block {
 SplatPass::SplatPass(SplatDetail detail)
     : detail_(detail),
       depth_(programOf("pass/splat_depth.vert", "pass/splat_depth.frag")),
-      sum_(programOf("pass/splat_sum.vert", "pass/splat_sum.frag")),
       light_(programOf("pass/splat_light.vert", "pass/splat_light.frag")) {
   for (std::size_t i = 0; i < eye_.size(); ++i) {
     shading::ShaderDefines defines;
@@ -148,6 +156,7 @@ void SplatPass::reserve(std::size_t clouds, std::size_t balls) {
   pieces_.reserve(balls);
   order_.reserve(balls);
   distances_.reserve(balls);
+  tileOf_.reserve(balls);
   values_.reserve(kValuesInBall * balls);
 }
 
@@ -214,8 +223,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     x += kStacks * b.size.width();
   }
   const int height = stacksHeight_ = row + last.height();
-  atLeast(slices_, toSlices_, stacksWidth, height, gpu::Format::kR32F);
-  atLeast(depths_, toDepths_, stacksWidth, height, gpu::Format::kR32F);
+  atLeast(depths_, toDepths_, stacksWidth, height, gpu::Format::kRgba32F);
 }
 
 // What a cloud's balls add to the slices of a stack.
@@ -256,26 +264,24 @@ void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const 
   }
 }
 
-// A ball in the slices that it reaches into; z: from the stack's front. What is in front of the stack counts
-// to its first slice.
+// A ball in the slices from its own on; z: from the stack's front. What is in front of the stack counts from
+// its first slice on.
 void SplatPass::addSlices(const Block& block, int beside, const InStack& ball, double texelM, double sliceM) {
   const StackSize& own = block.size;
   // So that no ball falls between texels; it keeps its mass.
   const double wider = std::max(texelM / ball.seenM, 1.0), radiusM = ball.radiusM * wider;
   const int first = std::max(static_cast<int>((ball.z - radiusM) / sliceM), 0);
-  const int end = std::clamp(static_cast<int>(std::floor((ball.z + radiusM) / sliceM)) + 1, 1, own.slices());
   const double depth = ball.density * radiusM / (wider * wider * wider);
   const double px = 0.5 * own.sidePx + ball.x / texelM, py = 0.5 * own.sidePx + ball.y / texelM;
-  for (int slice = first; slice < end; ++slice) {
+  for (int four = first / 4; four < own.fours(); ++four) {
     // Its tile, which it may not leave: see pass/splat_depth.vert.
-    const int left = block.x + beside * own.width() + own.sidePx * (slice % own.columns()),
-              lower = block.y + own.sidePx * (slice / own.columns());
-    values_.insert(values_.end(),
-                   {static_cast<float>(left + px), static_cast<float>(lower + py),
-                    static_cast<float>(wider * ball.seenM / texelM), static_cast<float>(depth),
-                    slice == 0 ? -1.0f : static_cast<float>((slice * sliceM - ball.z) / radiusM),
-                    static_cast<float>(((slice + 1) * sliceM - ball.z) / radiusM),
-                    static_cast<float>(256 * left + own.sidePx), static_cast<float>(lower)});
+    const int left = block.x + beside * own.width() + own.sidePx * (four % own.columns()),
+              lower = block.y + own.sidePx * (four / own.columns());
+    values_.insert(values_.end(), {static_cast<float>(left + px), static_cast<float>(lower + py),
+                                   static_cast<float>(wider * ball.seenM / texelM), static_cast<float>(depth),
+                                   static_cast<float>(((4 * four + 1) * sliceM - ball.z) / radiusM),
+                                   static_cast<float>(sliceM / radiusM),
+                                   static_cast<float>(256 * left + own.sidePx), static_cast<float>(lower)});
   }
 }
 
@@ -315,22 +321,10 @@ void SplatPass::drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3&
     if (b.share * kEyeStackFrom < 1.0) addStack(clouds[b.cloud], eyeM, axesOf(-b.centreM), 2, b);
   }
   inSlices_.upload(values_);
-  const gpu::Tile area{0, 0, slices_.width(), stacksHeight_};
-  const glm::vec2 perTexel = 1.0f / glm::vec2(area.width, area.height);
-  depth_.set("uPerTexel", perTexel);
-  toSlices_->clear();
-  inSlices_.draw(depth_, {toSlices_->id(), area}, {.blend = gpu::Blend::kAdd});
-
-  values_.clear();
-  for (const Block& b : blocks_) {
-    for (int beside = 0; beside < kStacks; ++beside)
-      values_.insert(values_.end(), {static_cast<float>(b.x + beside * b.size.width()),
-                                     static_cast<float>(b.y), static_cast<float>(b.size.sidePx), 0.0f});
-  }
-  inBlocks_.upload(values_);
-  sum_.set("uPerTexel", perTexel);
-  sum_.bind("uSlices", slices_);
-  inBlocks_.draw(sum_, {toDepths_->id(), area}, {});
+  const gpu::Tile area{0, 0, depths_.width(), stacksHeight_};
+  depth_.set("uPerTexel", 1.0f / glm::vec2(area.width, area.height));
+  toDepths_->clear();
+  inSlices_.draw(depth_, {toDepths_->id(), area}, {.blend = gpu::Blend::kAdd});
   light_.set("uSunStack", glm::mat3(sun));
   light_.set("uSkyStack", glm::mat3(sky));
 }
@@ -364,29 +358,61 @@ void SplatPass::sort() {
   }
 }
 
+// A tile for each ball, those of one size in rows of their own.
+void SplatPass::findTiles(double pixelRad) {
+  const Rays& rays = detail_ == SplatDetail::kStill ? kStillRays : kLiveRays;
+  std::array<std::size_t, kMostTilePx + 1> counts{};
+  tileOf_.resize(pieces_.size());
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const double centreM = std::max(static_cast<double>(glm::length(pieces_[i].centreM)), 1e-3);
+    const double radiusPx = static_cast<double>(pieces_[i].radiusM) / (centreM * pixelRad);
+    const int side = static_cast<int>(std::ceil(std::min(rays.perPx * (radiusPx - 1.0), 1e3)));
+    tileOf_[i].z = static_cast<float>(std::clamp(side, rays.least, rays.most));
+    ++counts[static_cast<std::size_t>(tileOf_[i].z)];
+  }
+  int most = rays.most;
+  for (; most > rays.least; --most) {
+    double texels = 0.0;
+    for (int side = rays.least; side <= rays.most; ++side)
+      texels +=
+          std::pow(std::min(side, most), 2.0) * static_cast<double>(counts[static_cast<std::size_t>(side)]);
+    if (texels <= rays.texels) break;
+  }
+  for (int side = most + 1; side <= rays.most; ++side) {
+    std::size_t& count = counts[static_cast<std::size_t>(side)];
+    counts[static_cast<std::size_t>(most)] += count;
+    count = 0;
+  }
+  std::array<glm::ivec2, kMostTilePx + 1> next{};
+  tilesHeight_ = 0;
+  for (int side = rays.least; side <= most; ++side) {
+    next[static_cast<std::size_t>(side)] = {0, tilesHeight_};
+    const int inRow = kTilesWidthPx / side, count = static_cast<int>(counts[static_cast<std::size_t>(side)]);
+    tilesHeight_ += side * ((count + inRow - 1) / inRow);
+  }
+  for (glm::vec3& tile : tileOf_) {
+    const int side = std::min(static_cast<int>(tile.z), most);
+    glm::ivec2& at = next[static_cast<std::size_t>(side)];
+    tile = {at.x, at.y, side};
+    at.x += side;
+    if (at.x + side > kTilesWidthPx) at = {0, at.y + side};
+  }
+}
+
 void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tables) {
-  const int rows = (static_cast<int>(pieces_.size()) + kTilesInRow - 1) / kTilesInRow;
-  int tilePx = kTilePx;
-  if (detail_ == SplatDetail::kStill)
-    tilePx = std::clamp(static_cast<int>(std::sqrt(kMostFineTexels / static_cast<double>(pieces_.size()))),
-                        kTilePx, kFineTilePx);
-  atLeast(tiles_, toTiles_, kTilesInRow * tilePx, rows * tilePx, gpu::Format::kRgba32F);
-  tileLayout_ = glm::vec3(tilePx, tiles_.width() / static_cast<float>(tilePx),
-                          tiles_.height() / static_cast<float>(tilePx));
-  light_.set("uTiles", glm::vec3(tilePx, kTilesInRow, rows));
-  light_.set("uTilesInRow", static_cast<float>(kTilesInRow));
+  atLeast(tiles_, toTiles_, kTilesWidthPx, tilesHeight_, gpu::Format::kRgba32F);
+  light_.set("uPerTexel", 1.0f / glm::vec2(kTilesWidthPx, tilesHeight_));
   light_.set("uEyeM", static_cast<float>(view.eyeM.z));
   light_.set("uEnuFromCamera", view.enuFromCamera);
   light_.set("uRayScale", view.rayScale);
   tables.bind(light_);
   light_.bind("uDepths", depths_);
-  inTiles_.draw(light_, {toTiles_->id(), {0, 0, kTilesInRow * tilePx, rows * tilePx}}, {});
+  inTiles_.draw(light_, {toTiles_->id(), {0, 0, kTilesWidthPx, tilesHeight_}}, {});
 }
 
 void SplatPass::drawBalls(const shading::ViewParts& view, const SplatTarget& to) {
   gpu::Program& p = eye_[(to.distance ? 1u : 0u) + (to.depth.texture != 0 ? 2u : 0u)];
-  p.set("uTiles", tileLayout_);
-  p.set("uTilesInRow", static_cast<float>(kTilesInRow));
+  p.set("uPerTexel", 1.0f / glm::vec2(tiles_.width(), tiles_.height()));
   p.set("uClipFromEnu", view.clipFromEnu);
   p.set("uEnuFromCamera", view.enuFromCamera);
   p.set("uRayScale", view.rayScale);
@@ -439,7 +465,7 @@ void SplatPass::drawShadow(std::span<const SplatCloud> clouds, const glm::dvec3&
           values_.end(),
           {static_cast<float>((0.5 + 0.5 * at.x) * kShadowPx),
            static_cast<float>((0.5 + 0.5 * at.y) * kShadowPx), static_cast<float>(radiusM / texelM),
-           static_cast<float>(b.density * share * share * share * radiusM), -1.0f, 1.0f, 0.0f, 0.0f});
+           static_cast<float>(b.density * share * share * share * radiusM), 1.0f, 0.0f, 0.0f, 0.0f});
     }
   inSlices_.upload(values_);
   depth_.set("uPerTexel", glm::vec2(1.0f / kShadowPx));
@@ -468,9 +494,11 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
         pieces_.push_back({glm::vec3(b.centreM - view.eyeM), static_cast<float>(b.radiusM),
                            static_cast<float>(b.density), static_cast<std::uint32_t>(i)});
   sort();
+  findTiles(static_cast<double>(view.pixelRad));
   values_.clear();
-  for (std::size_t tile = 0; tile < order_.size(); ++tile) {
-    const Piece& b = pieces_[order_[tile]];
+  for (const std::uint32_t i : order_) {
+    const Piece& b = pieces_[i];
+    const glm::vec3& tile = tileOf_[i];
     const Block& block = blocks_[b.block];
     const SplatCloud& cloud = clouds[block.cloud];
     const glm::vec3 centre(block.centreM);
@@ -483,9 +511,9 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
                                    b.centreM.z,
                                    b.radiusM,
                                    b.density,
-                                   static_cast<float>(tile),
                                    static_cast<float>(cloud.phase) + eyeStack,
                                    cloud.albedo,
+                                   0.0f,
                                    centre.x,
                                    centre.y,
                                    centre.z,
@@ -497,15 +525,20 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
                                    static_cast<float>(block.x),
                                    static_cast<float>(block.y),
                                    static_cast<float>(block.size.sidePx),
-                                   block.halves[5]});
+                                   block.halves[5],
+                                   tile.x,
+                                   tile.y,
+                                   tile.z,
+                                   0.0f});
   }
   inTiles_.upload(values_);
   drawLight(view, tables);
   values_.clear();
-  for (std::size_t tile = 0; tile < order_.size(); ++tile) {
-    const Piece& b = pieces_[order_[tile]];
-    values_.insert(values_.end(), {b.centreM.x, b.centreM.y, b.centreM.z, b.radiusM, b.density,
-                                   static_cast<float>(tile), 0.0f, 0.0f});
+  for (const std::uint32_t i : order_) {
+    const Piece& b = pieces_[i];
+    const glm::vec3& tile = tileOf_[i];
+    values_.insert(values_.end(),
+                   {b.centreM.x, b.centreM.y, b.centreM.z, b.radiusM, b.density, tile.x, tile.y, tile.z});
   }
   quads_.upload(values_);
   drawBalls(view, to);

@@ -5,7 +5,8 @@
 //
 // Light pass: of each cloud the balls' optical depths add up in slices across the light's direction, whatever
 // their order, for the sun (or moon) and for the zenith; finer slices for clouds that are larger in view.
-// From them, the light that each ball sends to the eye, along 4 x 4 rays through it (16 x 16 in stills). Eye
+// From them, the light that each ball sends to the eye, along 2 x 2 to 4 x 4 rays through it by its size in
+// view (3 x 3 to 16 x 16 in stills). Eye
 // pass: the balls from far to near, each with its exact optical depth along every ray. Light scattered more
 // than once is lib/cloud_light.glsl's, as in marched volumes. The phase function is the first scattering's;
 // all later ones are those of droplets. Clouds shade one another in the sun, not under the sky.
@@ -107,17 +108,17 @@ class SplatPass {
   void addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
                  const Block& block);
   void sort();
+  void findTiles(double pixelRad);
   void drawLight(const shading::ViewParts& view, const SkyTextures& tables);
   void drawBalls(const shading::ViewParts& view, const SplatTarget& to);
 
   SplatDetail detail_;
-  gpu::Program depth_, sum_, light_;
+  gpu::Program depth_, light_;
   std::array<gpu::Program, 4> eye_;  // bit 0: with distance, bit 1: with an engine's depth
-  gpu::Instances inSlices_{2}, inBlocks_{1}, inTiles_{5}, quads_{2};
-  gpu::Texture2D slices_, depths_, tiles_;
-  std::optional<gpu::Framebuffer> toSlices_, toDepths_, toTiles_;
-  int stacksHeight_ = 0;        // texels of the stacks' textures that are in use
-  glm::vec3 tileLayout_{1.0f};  // texels on a tile's side; tiles that the texture has room for, across and up
+  gpu::Instances inSlices_{2}, inTiles_{6}, quads_{2};
+  gpu::Texture2D depths_, tiles_;
+  std::optional<gpu::Framebuffer> toDepths_, toTiles_;
+  int stacksHeight_ = 0, tilesHeight_ = 0;  // texels of the textures that are in use
   gpu::TexelReader depthReader_;
   glm::vec3 toLight_{0.0f, 0.0f, 1.0f};
   std::vector<Block> blocks_;
@@ -125,6 +126,7 @@ class SplatPass {
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> order_;  // far to near, as the last frame had it
   std::vector<float> distances_;      // of each piece
+  std::vector<glm::vec3> tileOf_;     // of each piece: texel at its tile's corner, texels on its side
   std::vector<float> values_;
   std::vector<std::uint32_t> bySize_;
   gpu::Texture2D shadow_;

@@ -19,6 +19,7 @@ namespace {
 // A level will do whose balls are no larger in view.
 constexpr double kBallRad = 0.003;
 constexpr double kLayerBallRad = 0.008;  // of a layer's, which are many
+constexpr double kShadowBalls = 3.0;     // so many times as large in shadows
 // Two levels fade into one another over that share of the distance at which the coarser one would do.
 constexpr double kFade = 0.3;
 
@@ -30,6 +31,7 @@ struct LevelShare {
 LevelShare levelAt(std::span<const double> radiiM, double ballRad, double distanceM, MetaballDetail detail) {
   const std::size_t finest = radiiM.size() - 1;
   if (detail == MetaballDetail::kFinest) return {finest, 1.0};
+  if (detail == MetaballDetail::kAsShadow) ballRad *= kShadowBalls;
   for (std::size_t level = 0; level < finest; ++level) {
     const double fromM = radiiM[level] / ballRad;
     if (distanceM > fromM) return {level, glm::smoothstep(1.0, 1.0 + kFade, distanceM / fromM)};

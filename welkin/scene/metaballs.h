@@ -67,8 +67,8 @@ struct CloudBalls {
 };
 
 // As an eye sees them: coarser versions of clouds that are far away, fading into one another with the
-// distance; or all of them in full.
-enum class MetaballDetail { kAsSeen, kFinest };
+// distance; the same, coarser by far, as their shadows on the ground are soft; or all of them in full.
+enum class MetaballDetail { kAsSeen, kAsShadow, kFinest };
 
 // All clouds at one instant in full detail, as shapes and where they stand.
 struct MetaballInstances {

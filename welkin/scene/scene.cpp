@@ -143,7 +143,15 @@ void validate(const Scene& s) {
   if (s.metaballs.size() > kMaxMetaballs)
     throw ParameterError("there are " + std::to_string(s.metaballs.size()) +
                          " clouds of metaballs; expected at most " + std::to_string(kMaxMetaballs));
-  for (const MetaballCloud& cloud : s.metaballs) validate(cloud);
+  for (const MetaballCloud& cloud : s.metaballs) {
+    validate(cloud);
+    if (s.metaballsAs == MetaballRender::kVolume &&
+        (cloud.phase != MetaballPhase::kDroplets || cloud.albedo != 1.0))
+      throw ParameterError(
+          "clouds of metaballs that are marched scatter all light as droplets do; expected phase droplets "
+          "and "
+          "albedo 1, or metaballs_as splats");
+  }
   validate(s.skyBox);
   validate(s.slab);
   if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)

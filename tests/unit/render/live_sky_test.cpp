@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
+#include <iostream>
 #include <new>
+#include <vector>
 
 #include "tests/testing/foreign_engine.h"
 #include "tests/testing/metaball_scene.h"
@@ -291,6 +295,42 @@ TEST_F(LiveSkyTest, FramesWithMetaballsAllocateNothing) {
   const long before = gAllocations;
   for (int i = 3; i < 16; ++i) frame(i);
   EXPECT_EQ(gAllocations - before, 0);
+}
+
+// Four oktas to the horizon, the eye moving: a frame, and the same as a still.
+TEST_F(LiveSkyTest, DISABLED_CostOfMetaballs) {
+  scene::Scene s = looking(cloudyScene(35.0, {Genus::kCumulus}, 4.0), 285.0, 14.0, 75.0);
+  s.technique = scene::Technique::kMetaballs;
+  SkyRenderer stills;
+  for (const int height : {360, 540}) {
+    s = sized(s, height * 16 / 9, height);
+    const scene::SkyState state = scene::buildSky(s, 0.0);
+    std::vector<double> live, still;
+    context.makeCurrent();
+    {
+      LiveSky sky;
+      sky.update(s, 0.0);
+      shading::View view = shading::viewOf(state);
+      const gpu::Texture2D picture(height * 16 / 9, height, {.format = gpu::Format::kRgba16F});
+      const gpu::Framebuffer to(picture);
+      for (int i = 0; i <= 5; ++i) {
+        view.view[3].x += 5.0;
+        gpu::Stopwatch watch;
+        sky.draw(view, to);
+        if (i > 0) live.push_back(watch.finishedMs());  // the first compiles
+      }
+    }
+    for (int i = 0; i <= 3; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      stills.draw(state);
+      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+      if (i > 0) still.push_back(took.count());
+    }
+    context.makeCurrent();
+    std::ranges::sort(live);
+    std::ranges::sort(still);
+    std::cout << height << " lines: live " << live[2] << " ms, still " << still[1] << " ms\n";
+  }
 }
 
 // As in stills, a cloud over the eye darkens the ground.

@@ -187,6 +187,22 @@ TEST_F(SkySplatsTest, SaysWhatIsWrong) {
       << R"({"welkin": "metaballs", "balls": [{"center_m": [0, 0, 0], "radius_m": -1, "density": 1}]})";
   s.metaballs[0].file = (folder / "bad.json").string();
   EXPECT_THROW(scene::buildSky(s, 0.0), ParseError);
+  // What marching does not know.
+  s.metaballs = {cloudAt(1000.0)};
+  for (const scene::MetaballRender as : {scene::MetaballRender::kSplats, scene::MetaballRender::kVolume}) {
+    const bool marched = as == scene::MetaballRender::kVolume;
+    scene::Scene dark = s, other = s;
+    dark.metaballs[0].albedo = 0.9;
+    other.metaballs[0].phase = scene::MetaballPhase::kRayleigh;
+    for (scene::Scene* each : {&s, &dark, &other}) each->metaballsAs = as;
+    EXPECT_NO_THROW(scene::validate(s));
+    for (const scene::Scene* each : {&dark, &other}) {
+      if (marched)
+        EXPECT_THROW(scene::validate(*each), ParameterError);
+      else
+        EXPECT_NO_THROW(scene::validate(*each));
+    }
+  }
   s.metaballs.assign(300, cloudAt(1000.0));
   EXPECT_THROW(scene::validate(s), ParameterError);
 }
