@@ -34,6 +34,9 @@ using field::CloudLayer;
 constexpr double kRouletteBelow = 0.1, kRouletteTo = 0.3;
 // How often air and ground look for light by way of clouds.
 constexpr double kChainOfOthers = 0.25;
+// Light of which a smaller share than this would leave towards the eye, 1/sr, is looked for with a chance:
+// most scatterings in a cloud send little that way, and each would have its way to the sun walked.
+constexpr double kLittleLight = 0.03;
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
@@ -166,9 +169,15 @@ struct SkyTracer::Impl {
                                                       : isotropic;
   }
 
+  bool mayHaveCloud() const { return clouds.grid() || !balls.empty(); }
+
   // Adds the light that comes to p through clouds and air, times a share of it.
-  void addLight(Work& work, const glm::dvec3& p, const LightSample& light, const glm::dvec3& share) const {
+  void addLight(Work& work, const glm::dvec3& p, const LightSample& light, glm::dvec3 share) const {
     if (lights.isBelow(light, p)) return;
+    if (const double mean = sum(share) / 3.0; mayHaveCloud() && mean < kLittleLight) {
+      if (unit(work.random) * kLittleLight >= mean) return;
+      share *= kLittleLight / mean;
+    }
     const Ray ray{p, light.direction};
     double through = clouds.transmittance(ray, CloudMedium::kToGround, work.random);
     if (through > 0.0 && !balls.empty()) through *= balls.transmittance(ray, end(ray), work.random);
@@ -216,8 +225,7 @@ void SkyTracer::Impl::gather(const Path& path, const glm::dvec3& p, double chain
   if (light.disc < 0) return;
   const glm::dvec3 lit = path.throughput * value(light.direction);
   if (sum(lit) != 0.0) addLight(work, p, light, lit);
-  if ((clouds.grid() || !balls.empty()) && unit(work.random) < chain)
-    gatherByPeaks(path, p, light, chain, value, work);
+  if (mayHaveCloud() && unit(work.random) < chain) gatherByPeaks(path, p, light, chain, value, work);
 }
 
 template <class Value>
