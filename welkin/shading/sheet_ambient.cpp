@@ -174,6 +174,10 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];
   a.clearAir *= a.airUnderSheets;
   a.haze = scene::hazeLuminance(a.skyOnGround, a.ground);
+  if (!volumes.empty())  // which know the air at the eye's height
+    a.haze *=
+        state.ambient.haze /
+        glm::max(scene::hazeLuminance(state.ambient.skyOnGround, state.ambient.ground), glm::vec3(1e-30f));
 }
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {
