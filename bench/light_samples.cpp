@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -420,5 +422,10 @@ int run(int argc, char** argv) {
 }  // namespace welkin
 
 int main(int argc, char** argv) {
-  return welkin::run(argc, argv);
+  try {
+    return welkin::run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "light_samples: %s\n", e.what());
+    return 1;
+  }
 }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the network of shaders/lib/cloud_light_fit.glsl to examples written by bench/light_samples.
 
-    light_samples EXAMPLES.f32 900 300 8 1
+    light_samples EXAMPLES.f32 200 700 8 1
     tools/fit_cloud_light.py EXAMPLES.f32... [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
 
 Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
