@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows of volumes in the air: what of it the sun reaches along a ray, from the light volume at some places of chance.
 //
-// Needs lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
+// Needs lib/phase.glsl, lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
 
 #define WELKIN_AIR_SHADOWS
 
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
 
 const int kAirSamples = 4;
-// Light that clouds turn by some degrees only lights the air behind them as if it had not been turned: two thirds of what droplets scatter.
-const float kAirShadow = 0.33;
 
 bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
 
-// The share of what the air at a distance would add in the sun that it does add, but for what sheets take.
+// The share of what the air at a distance would add in the sun that it does add, but for what sheets take. Light that clouds turn by some
+// degrees only lights the air behind them as if it had not been turned.
 float litAirAt(vec3 dir, float t) {
   vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
-  return q.z >= uBands[uBandCount - 1].y ? 1.0 : exp(-kAirShadow * cloudDepthToSun(uLightVolume, q));
+  return q.z >= uBands[uBandCount - 1].y ? 1.0 : exp(-kDropletAside * cloudDepthToSun(uLightVolume, q));
 }
 
 // The share of what the air of [0, distanceM] would add in the sun that it does add. through: what it lets through.

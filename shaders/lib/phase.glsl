@@ -5,6 +5,7 @@
 
 WELKIN_CONST float kInvFourPi = 0.0795774715f;  // 1 / (4 pi)
 WELKIN_CONST float kDropletAsymmetry = 0.86f;      // mean cosine of scattering by cloud droplets, for closed forms
+WELKIN_CONST float kDropletAside = 0.33f;          // share that droplets turn by more than some degrees: what shades the air behind them
 
 WELKIN_FN float phaseIsotropic() { return kInvFourPi; }
 

@@ -51,5 +51,8 @@ float dropletMeanCosine(const DropletPhase& p) {
 float dropletAsymmetry() {
   return shared::kDropletAsymmetry;
 }
+float dropletAside() {
+  return shared::kDropletAside;
+}
 
 }  // namespace welkin::optics

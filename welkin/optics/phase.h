@@ -37,6 +37,8 @@ float phaseDroplet(float c, const DropletPhase& p);
 float dropletMeanCosine(const DropletPhase& p);
 // The mean cosine that closed forms for the inside of clouds go by, whatever the droplets.
 float dropletAsymmetry();
+// The share of what droplets scatter that they turn by more than some degrees.
+float dropletAside();
 
 }  // namespace welkin::optics
 

@@ -16,8 +16,6 @@
 namespace welkin::scene {
 namespace {
 
-// The share of what droplets scatter that goes aside: kAirShadow of shaders/lib/air_shadows.glsl.
-constexpr double kTurnedAside = 0.33;
 // How many cells more a slanting ray comes by at most.
 constexpr double kMoreCells = 3.0;
 
@@ -31,14 +29,12 @@ glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Li
 
 // What the volumes do with light on its way to the ground, on average over the sky.
 struct CloudShade {
-  double slantCover =
-      0.0;             // share of the key light's rays that meet cloud between lowest base and highest top
-  double cover = 0.0;  // of the sky, [0, 1]
-
-  double diffuse = 1.0;  // share of diffuse light that passes
-  double aside = 0.0;    // of what clouds take from rays, the share that is turned by more than a few degrees
-  double lowM = 0.0, highM = 0.0;  // from the lowest base to the highest top; where light falls on them
-  double lightM = 0.0;
+  double cover = 0.0;       // of the sky, [0, 1]
+  double slantCover = 0.0;  // share of the key light's rays that meet cloud from lowest base to highest top
+  double diffuse = 1.0;     // share of diffuse light that passes
+  double aside = 0.0;  // of what clouds take from rays, the share that is turned by more than a few degrees
+  double lowM = 0.0, highM = 0.0;  // the lowest base and the highest top
+  double lightM = 0.0;             // where light falls on what is thick enough to scatter it all
   bool any = false;
   // Of the light that clouds take, the share that leaves them downwards.
   double downwards() const {
@@ -59,28 +55,23 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     }
     const field::CloudLayer& layer = clouds.layers()[i];
     const double cover = weather.layers[i].oktas / kOktas, depth = layer.topM - layer.baseM;
-    const double tau = depth * layer.extinction;
+    const double tau = depth * layer.extinction, cells = depth / (layer.cellM / 12.0);  // deep
     // Conservative cloud by Eddington's solution for diffuse light, 1 / (1 + 3/4 (1 - g) tau), tau being that
     // of its mean density. Of broken cloud half of the light leaves downwards, through its sides.
     const double deck = 1.0 / (1.0 + 0.75 * (1.0 - optics::dropletAsymmetry()) * 0.4 * tau);
-    shade.diffuse *= 1.0 - cover * (1.0 - std::lerp(std::max(deck, 0.5), deck,
-                                                    std::pow(cover, 1.0 + depth / (layer.cellM / 12.0))));
+    shade.diffuse *= 1.0 - cover * (1.0 - std::lerp(std::max(deck, 0.5), deck, std::pow(cover, 1.0 + cells)));
     clear *= 1.0 - cover;
-    // A slanting ray comes by more clouds, a cell being a twelfth of cellM; a few at most, as gaps are in
-    // line.
+    // A slanting ray comes by more clouds; a few at most, as gaps are in line.
     const double slant = std::sqrt(1.0 - sunHeight * sunHeight) / std::max(sunHeight, 0.05);
-    slantwise *= std::pow(1.0 - cover, std::min(0.5 * slant * depth / (layer.cellM / 12.0), kMoreCells));
-    straight *= 1.0 - cover * (1.0 - std::exp(-kTurnedAside * tau));
-    const bool deep = tau > 3.0;
-    if (!shade.any) shade.lowM = layer.baseM;
-    shade.lowM = std::min(shade.lowM, static_cast<double>(layer.baseM));
+    slantwise *= std::pow(1.0 - cover, std::min(0.5 * slant * cells, kMoreCells));
+    straight *= 1.0 - cover * (1.0 - std::exp(-optics::dropletAside() * tau));
+    shade.lowM = shade.any ? std::min(shade.lowM, static_cast<double>(layer.baseM)) : layer.baseM;
     shade.highM = std::max(shade.highM, static_cast<double>(layer.topM));
-    if (deep)
+    if (tau > 3.0)
       shade.lightM = std::max(shade.lightM, cover >= 0.5 ? layer.topM : 0.5 * (layer.baseM + layer.topM));
     shade.any = true;
   }
   shade.cover = all ? weather.requestedOktas / kOktas : 1.0 - clear;
-
   shade.slantCover = 1.0 - (1.0 - shade.cover) * slantwise;
   shade.aside = (1.0 - straight) / std::max(1.0 - clear, 1e-6);
   return shade;
