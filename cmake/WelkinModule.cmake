@@ -14,12 +14,21 @@ target_compile_options(welkin_settings INTERFACE
   $<BUILD_INTERFACE:$<$<BOOL:${WELKIN_WARNINGS_AS_ERRORS}>:-Werror>>)
 
 # What nearly every source includes can be parsed once a build instead of once a file. That hides a forgotten #include: a build that is to
-# find those of a kind leaves it out.
-set(WELKIN_PRECOMPILE "" CACHE STRING "Sources that share precompiled headers: LIBRARY, PROGRAM, TEST, several or none")
+# find those of a kind leaves it out. GTEST hides none: it is <gtest/gtest.h> alone, which every test includes in any case.
+set(WELKIN_PRECOMPILE "" CACHE STRING "Sources that share precompiled headers: LIBRARY, PROGRAM, TEST or GTEST, several or none")
+
+# What is compiled often and hardly computes anything itself need not be made fast as the library is. After all other flags.
+set(WELKIN_PROGRAM_FLAGS "" CACHE STRING "More compiler flags for the sources of the program")
+set(WELKIN_TEST_FLAGS "" CACHE STRING "More compiler flags for the sources of the tests")
+
+# welkin_flags(<target> PROGRAM|TEST) gives the target's own sources the flags of their kind.
+function(welkin_flags target kind)
+  target_compile_options(${target} PRIVATE ${WELKIN_${kind}_FLAGS})
+endfunction()
 
 # welkin_precompile(<target> LIBRARY|PROGRAM|TEST) lets the target use them where they are wanted.
 function(welkin_precompile target kind)
-  if(NOT kind IN_LIST WELKIN_PRECOMPILE)
+  if(NOT kind IN_LIST WELKIN_PRECOMPILE AND NOT (kind STREQUAL "TEST" AND "GTEST" IN_LIST WELKIN_PRECOMPILE))
     return()
   endif()
   string(TOLOWER "welkin_${kind}_headers" owner)
@@ -29,9 +38,12 @@ function(welkin_precompile target kind)
     file(GENERATE OUTPUT "${PROJECT_BINARY_DIR}/${owner}.cpp" CONTENT "")
     add_library(${owner} OBJECT "${PROJECT_BINARY_DIR}/${owner}.cpp")
     target_link_libraries(${owner} PRIVATE welkin_settings glm::glm Threads::Threads)
-    target_precompile_headers(${owner} PRIVATE
-      <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <string> <string_view> <vector>
-      <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp>)
+    if(kind IN_LIST WELKIN_PRECOMPILE)
+      target_precompile_headers(${owner} PRIVATE
+        <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <string> <string_view> <vector>
+        <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp>)
+    endif()
+    welkin_flags(${owner} ${kind})
     if(kind STREQUAL "LIBRARY")
       set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     elseif(kind STREQUAL "TEST")
@@ -70,6 +82,7 @@ function(welkin_unit_test folder)
   target_link_libraries(test_${folder} PRIVATE welkin::${folder} ${ARG_LIBS} welkin_settings GTest::gtest_main)
   target_compile_definitions(test_${folder} PRIVATE
     WELKIN_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data")
+  welkin_flags(test_${folder} TEST)
   welkin_precompile(test_${folder} TEST)
   gtest_discover_tests(test_${folder} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}/" PROPERTIES LABELS unit TIMEOUT 300)
 endfunction()

@@ -11,17 +11,29 @@ endfunction()
 file(REMOVE_RECURSE "${WORK}")
 run("${CMAKE_COMMAND}" --install "${WELKIN_BUILD}" --prefix "${WORK}/prefix")
 
-# Every installed header must compile on its own: one source file for each.
+# Every installed header must compile on its own. One that its own source includes before all else has done so when Welkin was built
+# (unless that was with precompiled headers); each of the others gets a source here. One more includes them all as they are installed,
+# and again: once must be enough.
 set(include "${WORK}/prefix/include/welkin")
 file(GLOB_RECURSE headers RELATIVE "${include}" "${include}/welkin/*.h")
 list(LENGTH headers count)
 if(count EQUAL 0)
   message(FATAL_ERROR "no headers in ${include}")
 endif()
+set(all "")
 foreach(header IN LISTS headers)
-  string(MAKE_C_IDENTIFIER "${header}" name)
-  file(WRITE "${WORK}/headers/${name}.cpp" "#include \"${header}\"\n#include \"${header}\"  // again: once must be enough\n")
+  string(APPEND all "#include \"${header}\"\n")
+  string(REGEX REPLACE "\\.h$" ".cpp" source "${SOURCE}/${header}")
+  set(first "")
+  if(EXISTS "${source}" AND NOT PRECOMPILED)
+    file(STRINGS "${source}" first LIMIT_COUNT 1 REGEX "^ *# *include")
+  endif()
+  if(NOT first STREQUAL "#include \"${header}\"")
+    string(MAKE_C_IDENTIFIER "${header}" name)
+    file(WRITE "${WORK}/headers/${name}.cpp" "#include \"${header}\"\n")
+  endif()
 endforeach()
+file(WRITE "${WORK}/headers/all.cpp" "${all}${all}")
 
 run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/consumer" -B "${WORK}/build" -G "${GENERATOR}"
   "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
