@@ -17,6 +17,7 @@
 #include <fstream>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "welkin/core/error.h"
@@ -125,14 +126,24 @@ struct LightVolume {
     }
     return sum;
   }
-  glm::vec4 at(const glm::vec3& q) const {
+  // The cascade, and the share of the next one.
+  std::pair<int, float> cascade(const glm::vec3& q) const {
     const float reach = std::max(std::abs(q.x), std::abs(q.y));
-    const int cascade = reach < layout.kHalfM[0] * 0.96f ? 0 : (reach < layout.kHalfM[1] * 0.96f ? 1 : 2);
+    const int own = reach < layout.kHalfM[0] * 0.96f ? 0 : (reach < layout.kHalfM[1] * 0.96f ? 1 : 2);
+    const float half = layout.kHalfM[static_cast<std::size_t>(own)];
+    return {own, own == 2 ? 0.0f : std::max((reach / half - 0.77f) / 0.19f, 0.0f)};
+  }
+  glm::vec4 at(const glm::vec3& q) const {
+    const auto [own, next] = cascade(q);
     const float s = slice(q.z);
-    const glm::vec4 own = texel(q, s, cascade);
-    const float outward = reach / layout.kHalfM[static_cast<std::size_t>(cascade)];
-    if (cascade == 2 || outward <= 0.77f) return own;
-    return glm::mix(own, texel(q, s, cascade + 1), (outward - 0.77f) / 0.19f);
+    const glm::vec4 there = texel(q, s, own);
+    return next > 0.0f ? glm::mix(there, texel(q, s, own + 1), next) : there;
+  }
+  float cellM(const glm::vec3& q) const {
+    const auto [own, next] = cascade(q);
+    float half = layout.kHalfM[static_cast<std::size_t>(own)];
+    if (next > 0.0f) half = std::lerp(half, layout.kHalfM[static_cast<std::size_t>(own) + 1], next);
+    return 2.0f * half / static_cast<float>(texels.nx);
   }
 };
 
@@ -341,8 +352,10 @@ int run(int argc, char** argv) {
           const auto pixelRad = static_cast<float>(4e-4 * std::exp2(4.0 * unit(r)));
           const float detail = shared::cloudDetailSeen(static_cast<float>(distance), pixelRad);
           // As cloudSource() in lib/march.glsl has it.
-          constexpr int kSamples = 4;  // the qualities have 2 to 5
-          const float reach = 200.0f, extinction = clouds.extinction(q, detail);
+          constexpr int kSamples = 3;  // the qualities have 2 to 5
+          const float extinction = clouds.extinction(q, detail);
+          const float reach = std::min(kSamples * volume.cellM(q),
+                                       std::max((state.clouds->layers()[0].topM - q.z) / static_cast<float>(sun.z), 1.0f));
           if (extinction <= 0.0f) continue;
           float done = reach / std::pow(kSamples + 1.0f, 3.0f), near = extinction * done;
           const auto dither = static_cast<float>(unit(r));

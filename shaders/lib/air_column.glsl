@@ -96,13 +96,14 @@ float litSegment(AirRay ray, float fromM, float toM) {
 }
 
 #ifdef WELKIN_SHEETS
-void addSheet(int k, float fromM, float toM, inout MarchState state) {
+void addSheet(int k, float fromM, float toM, inout MarchState state, inout float bySheets) {
   if (airSheetAlpha[k] <= 0.0 || airSheetM[k] < fromM || airSheetM[k] >= toM) return;
   float share = state.transmittance * airSheetAlpha[k];
   state.sheets += share * airSheetLight[k];
   state.weightedDepth += share * airSheetM[k];
   state.weight += share;
   state.transmittance -= share;
+  bySheets += share;
 }
 #endif
 
@@ -117,6 +118,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
   MarchState state = MarchState(vec3(0.0), before, 0.0, 0.0, 0);
 #endif
   vec2 stretch;
+  float bySheets = 0.0;           // hidden by them
 #define WELKIN_SEGMENT(bounds, band, up)                          \
   stretch = bandStretch(vec2(bounds), up, ray.dir.z);             \
   stretch = vec2(max(stretch.x, fromM), min(stretch.y, toM));     \
@@ -126,7 +128,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
 #ifdef WELKIN_SHEETS
 #define WELKIN_SEGMENT_DOWN(p, band) WELKIN_SEGMENT(uPieces[p], band, false)
 #define WELKIN_SEGMENT_UP(p, band) WELKIN_SEGMENT(uPieces[p], band, true)
-#define WELKIN_SEGMENT_SHEET(k) addSheet(k, fromM, toM, state);
+#define WELKIN_SEGMENT_SHEET(k) addSheet(k, fromM, toM, state, bySheets);
   WELKIN_EACH_DOWN(WELKIN_SEGMENT_DOWN, WELKIN_SEGMENT_SHEET)
   WELKIN_EACH_UP(WELKIN_SEGMENT_UP, WELKIN_SEGMENT_SHEET)
   column.luminance += state.sheets;
@@ -147,7 +149,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
     middleLit = farLit;
     middleThrough = farThrough;
   }
-  column.luminance += state.luminance * middleThrough;
+  column.luminance += cloudsThroughAir(state.luminance, state.weight - bySheets, middleThrough);
   column.luminance += before * max(airBetween(nearLit, nearThrough, middleLit, middleThrough, lit), 0.0);
   column.luminance += state.transmittance * max(airBetween(middleLit, middleThrough, farLit, farThrough, lit), 0.0);
   column.clouds = state.transmittance;

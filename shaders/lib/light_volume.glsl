@@ -34,15 +34,32 @@ vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
 }
 
 // Towards the border of a cascade it is blended with the next.
+struct LightCascade {
+  int own;
+  float next;  // the next one's share
+};
+
+LightCascade lightCascade(vec2 q) {
+  float reach = max(abs(q.x), abs(q.y));
+  int own = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
+  return LightCascade(own, own == kCascades - 1 ? 0.0 : max((reach / uCascadeHalfM[own] - 0.77) / 0.19, 0.0));
+}
+
 vec4 lightVolumeAt(sampler3D volume, vec3 q) {
   q += vec3(uLightShiftM, 0.0);
-  float reach = max(abs(q.x), abs(q.y));
   float slice = lightVolumeSlice(q.z);
-  int cascade = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
-  vec4 own = lightVolumeTexel(volume, vec2(q), slice, cascade);
-  float outward = reach / uCascadeHalfM[cascade];
-  if (cascade == kCascades - 1 || outward <= 0.77) return own;
-  return mix(own, lightVolumeTexel(volume, vec2(q), slice, cascade + 1), (outward - 0.77) / 0.19);
+  LightCascade cascade = lightCascade(vec2(q));
+  vec4 own = lightVolumeTexel(volume, vec2(q), slice, cascade.own);
+  if (cascade.next <= 0.0) return own;
+  return mix(own, lightVolumeTexel(volume, vec2(q), slice, cascade.own + 1), cascade.next);
+}
+
+// How far apart its columns are at a place, m: nothing smaller is known there.
+float lightVolumeCellM(sampler3D volume, vec3 q) {
+  LightCascade cascade = lightCascade(vec2(q) + uLightShiftM);
+  float halfM = uCascadeHalfM[cascade.own];
+  if (cascade.next > 0.0) halfM = mix(halfM, uCascadeHalfM[cascade.own + 1], cascade.next);
+  return 2.0 * halfM / float(textureSize(volume, 0).x);
 }
 
 CloudDepths cloudDepthsAt(sampler3D volume, vec3 q) {

@@ -25,7 +25,6 @@ uniform float uStepShare;         // step as a share of the distance
 uniform float uStepLong;          // the longest step through clear air, in those of the above
 uniform int uMaxSteps;
 uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
-uniform float uSunReachM;         // how far they reach
 #ifdef WELKIN_SHEETS
 uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
 uniform int uHits;                // WELKIN_HITS
@@ -75,12 +74,16 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
 // Source function at q: scattered radiance per unit extinction, cd/m2.
 vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, FirstPhases phases, CloudView view, AroundClouds around, float dither) {
   // Towards the sun: first through the point's own density, then through samples at distances that grow
-  // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says.
-  float done = uSunReachM / pow(float(uSunSamples) + 1.0, 3.0);
+  // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says. It knows nothing of
+  // forms smaller than its cells, and a surface that faces the sun would lie in its own shadow: there is a sample for every cell of the
+  // way, as far as there is cloud.
+  float edge = (uKeyDirection.z > 0.0 ? uBands[band].y : uBands[band].x) - q.z;
+  float reachM = min(float(uSunSamples) * lightVolumeCellM(uLightVolume, q), max(edge / uKeyDirection.z, 1.0));
+  float done = reachM / pow(float(uSunSamples) + 1.0, 3.0);
   float near = point.extinction * done;
   for (int i = 1; i <= uSunSamples; ++i) {
     float x = (float(i) + 1.0) / (float(uSunSamples) + 1.0);
-    float end = uSunReachM * x * x * x;
+    float end = reachM * x * x * x;
     float at = mix(done, end, 0.3 + 0.4 * fract(dither + 0.382 * float(i)));
     near += (end - done) * cloudExtinctionInBand(band, q + uKeyDirection * at, i == 1 ? detail : 0.0);
     done = end;
@@ -92,8 +95,10 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   CloudPhase phase = CloudPhase(mix(phases.droplets, phases.ice, ice),
                                 PhasePeak(mix(droplets.share, kIcePeakShare, ice), mix(droplets.g, kIcePeakG, ice)));
   vec4 place = point.place / point.extinction;
-  CloudScattering scattered =
-      cloudScattering(depths, view, CloudPlace(ice, point.cover / point.extinction, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
+  float cover = point.cover / point.extinction;
+  CloudScattering scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
+  // Light from above comes into a deck through its top, and into a cloud among others through its sides.
+  float enteredM = mix(q.z, q.z + (1.0 - place.y) * place.z, cover * cover * cover * cover);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
   sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
@@ -102,10 +107,10 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
   float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
   return keyLightAt(q.z, p) * (sheets * sun) +
-         lightFromAbove(around, q.z) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
+         lightFromAbove(around, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #else
   return keyLightAt(q.z, p) * sun +
-         lightFromAbove(around, q.z) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
+         lightFromAbove(around, enteredM) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
 #endif
 }
 

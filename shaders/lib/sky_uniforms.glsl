@@ -19,7 +19,7 @@ uniform vec3 uGroundLight;        // luminance of the ground as clouds see it
 struct LightMoments {
   vec4 red, green, blue;
 };
-uniform LightMoments uAboveLight[2];  // from above the horizon at the ground, at 10 km
+uniform LightMoments uAboveLight[3];  // from above the horizon at the ground, at 2 km, at 10 km
 uniform LightMoments uBelowLight[2];  // from below it, air and ground, at 2 km, at 10 km
 uniform sampler2D uSkyView;
 uniform sampler3D uAerialInscatter;
@@ -50,6 +50,14 @@ vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, fl
 }
 vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit); }
 
+// Light of clouds as it arrives through air, of what they hide. Haze scatters mostly forward: a part of what it takes from a ray is as if it had
+// not been turned, for there is cloud about the ray too. In the place of that is the mean light about the eye that the air has been given.
+const float kHazeForward = 0.3;
+vec3 cloudsThroughAir(vec3 luminance, float hidden, vec3 through) {
+  float red = max(through.x, 1e-4);  // haze takes as much of all colours, molecules little of red
+  return luminance * through + (pow(red, -kHazeForward) - 1.0) * through * (luminance - hidden * uHazeLuminance);
+}
+
 // The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   aerialLit(dir, distanceM, inscatter, through);
@@ -75,8 +83,8 @@ vec2 sphereCrossings(float h, float dirZ) {
 // that what lies behind them counts more; and what lies overhead, as it finds its way in more easily than what comes slanting. Weights
 // linear in the direction, which match where paths of the reference renderer end, in the scenes of bench/truth, within a tenth.
 struct AroundClouds {
-  vec3 above, aboveHigh;          // at the ground, at 10 km
-  vec3 below, belowHigh;          // at 2 km, at 10 km
+  vec3 above, aboveLow, aboveHigh; // at the ground, at 2 km, at 10 km
+  vec3 below, belowHigh;           // at 2 km, at 10 km
 };
 const float kAroundForward = 1.5;
 const float kAroundUpright = 1.0;
@@ -89,13 +97,15 @@ vec3 weighedLight(LightMoments light, vec3 weights, float side) {
 AroundClouds aroundClouds(vec3 dir) {
   vec3 up = kAroundForward * dir + vec3(0.0, 0.0, kAroundUpright), down = kAroundForward * dir - vec3(0.0, 0.0, kAroundUpright);
   return AroundClouds(weighedLight(uAboveLight[0], up, 1.0), weighedLight(uAboveLight[1], up, 1.0),
+                      weighedLight(uAboveLight[2], up, 1.0),
                       weighedLight(uBelowLight[0], down, -1.0), weighedLight(uBelowLight[1], down, -1.0));
 }
 
-vec3 lightFromAbove(AroundClouds around, float heightM) { return mix(around.above, around.aboveHigh, clamp(heightM / 10000.0, 0.0, 1.0)); }
-
 // Most of the air is low.
-vec3 lightFromBelow(AroundClouds around, float heightM) {
-  if (heightM < 2000.0) return mix(uGroundLight, around.below, (1.0 - exp(-heightM / 1500.0)) / (1.0 - exp(-2000.0 / 1500.0)));
-  return mix(around.below, around.belowHigh, clamp((heightM - 2000.0) / 8000.0, 0.0, 1.0));
+vec3 atHeight(vec3 ground, vec3 low, vec3 high, float heightM) {
+  if (heightM < 2000.0) return mix(ground, low, (1.0 - exp(-heightM / 1500.0)) / (1.0 - exp(-2000.0 / 1500.0)));
+  return mix(low, high, clamp((heightM - 2000.0) / 8000.0, 0.0, 1.0));
 }
+
+vec3 lightFromAbove(AroundClouds around, float heightM) { return atHeight(around.above, around.aboveLow, around.aboveHigh, heightM); }
+vec3 lightFromBelow(AroundClouds around, float heightM) { return atHeight(uGroundLight, around.below, around.belowHigh, heightM); }

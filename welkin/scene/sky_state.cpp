@@ -99,10 +99,10 @@ double highAltitude(double groundAltitudeM) {
   return std::max(ClearSkyKey::kHighM, groundAltitudeM + 1000.0);
 }
 
-// Fills in below and belowHigh: the air that clouds see beneath them, of which they shade a share, and the
+// Fills in below and belowHigh: the air that clouds see beneath them, a share of it shaded by them, and the
 // ground through it.
 void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const sky::LightMoments& highAir,
-                       float cover, AmbientLight& a) {
+                       float shaded, AmbientLight& a) {
   // The mean way through a layer of the air of light from all sides is as long as that at this cosine.
   constexpr double kMeanCosine = 0.6;
   const double ground = s.atmosphere->groundAltitudeM();
@@ -115,7 +115,7 @@ void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const
     return sky::LightMoments{2.0f * pi * luminance, {glm::vec3(0.0f), glm::vec3(0.0f), -pi * luminance}};
   };
   const glm::vec3 low = through(ground + ClearSkyKey::kLowM), high = through(highAltitude(ground));
-  const sky::LightMoments shade = cover * (hemisphere((1.0f - low) * a.haze) + -1.0f * lowAir);
+  const sky::LightMoments shade = shaded * (hemisphere((1.0f - low) * a.haze) + -1.0f * lowAir);
   a.below = lowAir + shade + hemisphere(low * a.ground);
   a.belowHigh = highAir + shade + hemisphere(high * a.ground);
 }
@@ -130,6 +130,7 @@ AmbientLight ambientLight(const SkyState& s) {
     return (1.0f - w) * x + w * y;
   };
   a.above = now(before.ground, after.ground);
+  a.aboveLow = now(before.low, after.low);
   a.aboveHigh = now(before.high, after.high);
   const glm::vec3 skyOnGround = a.above.along[2];
   a.skyLow = skyOnGround / pi;
@@ -164,7 +165,9 @@ AmbientLight ambientLight(const SkyState& s) {
   a.haze = glm::mix(under, over, above);
   const glm::vec3 none = hazeLuminance(skyOnGround, albedo / pi * (skyOnGround + direct));
   a.cloudGlow = glm::max(a.haze - none, glm::vec3(0.0f));
-  addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), cover, a);
+  // Under a low sun nearly all of it is in their shade.
+  addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir),
+                    taken * aside, a);
   return a;
 }
 
@@ -212,15 +215,22 @@ void ClearSkyKeyInProgress::computeTo(int part) {
   const double ground = atmosphere_->groundAltitudeM(), low = ground + ClearSkyKey::kLowM,
                high = highAltitude(ground);
   for (; done_ < std::min(part, kParts); ++done_) {
-    const bool isHigh = done_ >= kSky + kAir;
-    const int ring = isHigh ? done_ - kSky - kAir : done_;
-    if (ring < kSky) {
-      sky::LightMoments& sum = isHigh ? key_.high : key_.ground;
-      sum = sum + atmosphere_->skyLightOfRing(isHigh ? high : ground, lights_, ring);
-    } else {
-      sky::LightMoments& sum = isHigh ? key_.highAir : key_.lowAir;
-      sum = sum + atmosphere_->airLightOfRing(isHigh ? high : low, lights_, ring - kSky);
-    }
+    int ring = done_;
+    const auto add = [&](int rings, sky::LightMoments& sum, const auto& lightOf) {
+      if (ring >= 0 && ring < rings) sum = sum + lightOf(ring);
+      ring -= rings;
+    };
+    const auto sky = [&](double altitude) {
+      return [&, altitude](int r) { return atmosphere_->skyLightOfRing(altitude, lights_, r); };
+    };
+    const auto air = [&](double altitude) {
+      return [&, altitude](int r) { return atmosphere_->airLightOfRing(altitude, lights_, r); };
+    };
+    add(kSky, key_.ground, sky(ground));
+    add(kSky, key_.low, sky(low));
+    add(kSky, key_.high, sky(high));
+    add(kAir, key_.lowAir, air(low));
+    add(kAir, key_.highAir, air(high));
   }
 }
 

@@ -27,9 +27,9 @@ struct AmbientLight {
   glm::vec3 skyHigh{0};      // the same at 10 km
   glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
   glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
-  // What comes from above the horizon at the ground and at 10 km, and from below it at 2 km and at 10 km, air
-  // and ground.
-  sky::LightMoments above, aboveHigh, below, belowHigh;
+  // What comes from above the horizon at the ground, at 2 km and at 10 km, and from below it at 2 km and at
+  // 10 km, air and ground.
+  sky::LightMoments above, aboveLow, aboveHigh, below, belowHigh;
   float clearAir = 1.0f;        // share of the air beneath the clouds that the sun reaches
   float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
   glm::vec3 haze{0};            // mean luminance about the eye where it does not, cd/m2
@@ -49,8 +49,8 @@ struct ClearSkyKey {
   static constexpr double kKeyS = 30.0;
   static constexpr double kLowM = 2000.0, kHighM = 10000.0;  // above the ground, and above the sea
   double atS = 0.0;
-  sky::LightMoments ground, high;     // of the sky above the horizon at the ground, at kHighM
-  sky::LightMoments lowAir, highAir;  // of the air below it at kLowM, at kHighM
+  sky::LightMoments ground, low, high;  // of the sky above the horizon at the ground, at kLowM, at kHighM
+  sky::LightMoments lowAir, highAir;    // of the air below it at kLowM, at kHighM
 
   bool operator==(const ClearSkyKey&) const = default;
 };
@@ -102,7 +102,7 @@ void moveSky(SkyState& state, double secondsAfter);
 // A key instant in portions, for frame loops: the same key whatever the portions.
 class ClearSkyKeyInProgress {
  public:
-  static constexpr int kParts = 2 * (sky::Atmosphere::kSkyRings + sky::Atmosphere::kAirRings);
+  static constexpr int kParts = 3 * sky::Atmosphere::kSkyRings + 2 * sky::Atmosphere::kAirRings;
   void start(const SkyState& state, double atS);   // of which it keeps the atmosphere
   void computeTo(int part);                        // the first `part` of them
   const ClearSkyKey& key() const { return key_; }  // complete after computeTo(kParts)

@@ -102,7 +102,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uSkyOnGround", state.ambient.skyOnGround);
   u.put("", "uGroundLight", state.ambient.ground);
   putMoments(u, "uAboveLight[0]", state.ambient.above);
-  putMoments(u, "uAboveLight[1]", state.ambient.aboveHigh);
+  putMoments(u, "uAboveLight[1]", state.ambient.aboveLow);
+  putMoments(u, "uAboveLight[2]", state.ambient.aboveHigh);
   putMoments(u, "uBelowLight[0]", state.ambient.below);
   putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
   u.put("", "uClearAir", state.ambient.clearAir);
@@ -189,7 +190,7 @@ MarchSettings marchSettings(scene::Quality quality) {
 Uniforms marchUniforms(const MarchSettings& settings) {
   return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
           {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
-          {"uSunSamples", settings.sunSamples}, {"uSunReachM", 200.0f}};
+          {"uSunSamples", settings.sunSamples}};
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {

@@ -34,10 +34,10 @@ void* counted(std::size_t size, std::size_t alignment) {
 }  // namespace
 
 // Replaced for the whole program, to count. Not inlined, since g++ would see memory of `new` given to free().
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   return counted(size, 1);
 }
-void* operator new(std::size_t size, std::align_val_t alignment) {
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
   return counted(size, static_cast<std::size_t>(alignment));
 }
 [[gnu::noinline]] void operator delete(void* p) noexcept {

@@ -26,7 +26,7 @@ std::atomic<long> gAllocations{0};
 }
 
 // Counted for the whole program; the tests look at differences.
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++gAllocations;
   if (void* p = std::malloc(size ? size : 1)) return p;
   throw std::bad_alloc();

@@ -34,9 +34,22 @@ TEST(ClearSkyKey, ASequenceHasTheStillsLight) {
     for (const SkyState* state : {&last, &moved}) {
       EXPECT_EQ(state->ambient.skyLow, still.ambient.skyLow) << t;
       EXPECT_EQ(state->ambient.skyHigh, still.ambient.skyHigh) << t;
+      EXPECT_EQ(state->ambient.aboveLow, still.ambient.aboveLow) << t;
       EXPECT_EQ(state->clearSky, still.clearSky) << t;
     }
   }
+}
+
+TEST(ClearSkyKey, LightFromAboveIsBluerAndLessTheHigher) {
+  Scene s;
+  s.time = parseUtcTime("2026-06-21T11:00:00Z");
+  const SkyState state = buildSky(s, 0.0);
+  const AmbientLight& a = state.ambient;
+  const auto blueness = [](const sky::LightMoments& m) { return m.total.z / m.total.x; };
+  EXPECT_GT(a.above.total.y, a.aboveLow.total.y);
+  EXPECT_GT(a.aboveLow.total.y, a.aboveHigh.total.y);
+  EXPECT_GT(blueness(a.aboveLow), 1.1f * blueness(a.above));
+  EXPECT_GT(blueness(a.aboveHigh), 1.1f * blueness(a.aboveLow));
 }
 
 TEST(ClearSkyKey, InPortionsIsTheSame) {
