@@ -47,6 +47,12 @@ vec2 splatBodyDepths(SplatStack stack, sampler2D depths, vec3 p) {
   return vec2(here.x, max(here.y, 0.5 * (here.y + inward.x + inward.y - here.x)));
 }
 
+// In front of the first slice's end, where none of the cloud itself is.
+float splatAhead(SplatStack stack, sampler2D depths, vec3 p) {
+  vec3 q = p - stack.centreM;
+  return splatFour(stack, depths, 0, vec2(dot(q, stack.across), dot(q, stack.upward)) / stack.halfM).x;
+}
+
 // Distance along a ray from the eye at which a cloud has that optical depth in front; past the cloud where it has less. The stack is the
 // eye's.
 float splatReach(SplatStack stack, sampler2D depths, vec3 dir, float depth) {

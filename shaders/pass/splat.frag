@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eye pass: a ball over what is behind it, premultiplied. Its column is exact for the fragment's ray, from the eye on and up to what
-// an engine has drawn (WELKIN_ENGINE_DEPTH). WELKIN_DISTANCE: writes how far away it is, too.
+// an engine has drawn (WELKIN_ENGINE_DEPTH). WELKIN_DISTANCE: writes how far away it is, too. The picture of a far cloud is there already: it is
+// as far away as its middle.
 
 #include "lib/splat.glsl"
 
 in vec3 vRay;
 in vec2 vLight;
-flat in vec3 vBall;
+flat in vec4 vBall;
 flat in mat3 vFrame;
 
 uniform float uScale;                     // written value for each cd/m2
@@ -32,8 +33,10 @@ void main() {
   float ahead = uDepthLaw.x / max(uDepthLaw.y + uDepthLaw.z * depth, 1e-20);
   end = clamp(ahead / (max(dot(dir, uAhead), 1e-6) * vBall.z) - nearest, -1.0, 1.0);
 #endif
-  float seen = 1.0 - exp(-vBall.y * splatColumn(vBall.x * vBall.x * across / all, -nearest, end));
-  outColor = vec4(uScale * textureLod(uLight, vLight, 0.0).xyz, 1.0) * seen;
+  vec4 light = textureLod(uLight, vLight, 0.0);
+  float before = 0.5 + 0.5 * end;  // of the picture, the share that is in front of what has been drawn
+  float seen = vBall.w > 0.0 ? before * light.w : 1.0 - exp(-vBall.y * splatColumn(vBall.x * vBall.x * across / all, -nearest, end));
+  outColor = vec4(uScale * light.xyz * (vBall.w > 0.0 ? before : seen), seen);
 #ifdef WELKIN_DISTANCE
   outDistance = vec4(0.001 * max(nearest, 0.0) * vBall.z, 0.0, 0.0, 1.0) * seen;
 #endif

@@ -8,6 +8,7 @@
 #include "lib/splat.glsl"
 #include "lib/splat_ray.glsl"
 #include "lib/splat_stack.glsl"
+#include "lib/splat_shading.glsl"
 
 flat in vec4 vBall;
 flat in vec4 vMatter;
@@ -59,16 +60,10 @@ void main() {
   SplatStack sunStack = SplatStack(vec3(vCloud), uSunStack[0], uSunStack[1], uSunStack[2], vHalves.x, vHalves.y, block);
   SplatStack skyStack = SplatStack(vec3(vCloud), uSkyStack[0], uSkyStack[1], uSkyStack[2], vHalves.z, vHalves.w, block + beside);
   vec2 sun = splatBodyDepths(sunStack, uDepths, p);
+  float shade = splatAhead(sunStack, uDepths, p);
   vec2 sky = splatDepths(skyStack, uDepths, p);
-  CloudDepths depths = CloudDepths(sun.x, sun.y, sky.x, sky.y);
+  CloudDepths depths = CloudDepths(max(sun.x - shade, 0.0), sun.y, sky.x, sky.y);
   float cosSun = dot(dir, uKeyDirection);
   float phase = vMatter.y < 0.5 ? phaseDroplet(cosSun, uDroplets) : (vMatter.y < 1.5 ? phaseRayleigh(cosSun) : phaseIsotropic());
-  vec3 fromGround = vec3(p.xy, p.z + uEyeM);
-  float heightM = max(fromGround.z + 0.5 * dot(p.xy, p.xy) / uEarthRadiusM, 0.0);
-  vec2 shares = cloudSkyShares(depths);
-  vec3 light = keyLightAt(heightM, fromGround) * cloudSunSource(depths, phase, cosSun, dir.z, uKeyDirection.z) +
-               skyAbove(heightM) * shares.x + uGroundLight * shares.y;
-  vec3 inscatter, through;
-  aerial(dir, distanceM, inscatter, through);
-  outLight = vec4(vMatter.z * light * through + inscatter, 0.0);
+  outLight = vec4(splatLight(depths, shade, dir, distanceM, phase, cosSun, vMatter.z), 0.0);
 }

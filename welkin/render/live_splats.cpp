@@ -20,7 +20,7 @@ bool LiveSplats::in(const scene::SkyState& state) {
 
 void LiveSplats::change(const scene::SkyState& state) {
   state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
-                      balls_);
+                      balls_, scene::MetaballDetail::kAsBalls);  // more than with pictures of far clouds
   state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM}, state.clouds->earthRadiusM(),
                       shadowBalls_, scene::MetaballDetail::kAsShadow);
   for (scene::CloudBalls* balls : {&balls_, &shadowBalls_}) {
@@ -45,10 +45,10 @@ void LiveSplats::lookFrom(const scene::SkyState& state, const glm::dvec3& eyeM) 
   state.metaballs->at(state.secondsAfter, eyeM, state.clouds->earthRadiusM(), balls_);
   state.metaballs->at(state.secondsAfter, eyeM, state.clouds->earthRadiusM(), shadowBalls_,
                       scene::MetaballDetail::kAsShadow);
-  splatClouds(balls_, clouds_);
-  splatClouds(shadowBalls_, shadowClouds_);
+  splatClouds(balls_, shadowBalls_, clouds_);
+  splatClouds(shadowBalls_, shadowBalls_, shadowClouds_);
   double low = 1e9, high = 0.0;
-  for (const field::Metaball& b : balls_.balls) {
+  for (const field::Metaball& b : shadowBalls_.balls) {
     low = std::min(low, b.centreM.z);
     high = std::max(high, b.centreM.z);
   }

@@ -5,6 +5,13 @@
 
 namespace welkin::render {
 
+gpu::Program graphicsProgram(std::string_view vertex, std::string_view fragment,
+                             std::span<const shading::ShaderDefine> defines) {
+  constexpr auto kDialect = shading::ShaderDialect::kGl330;
+  return gpu::Program::graphics(shading::assembleShader(vertex, kDialect, defines),
+                                shading::assembleShader(fragment, kDialect, defines));
+}
+
 gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shading::ShaderDefine> defines) {
   return gpu::Program::graphics(
       shading::assembleShader("pass/fullscreen.vert", shading::ShaderDialect::kGl330),

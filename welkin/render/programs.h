@@ -12,6 +12,10 @@
 
 namespace welkin::render {
 
+// A pass with a vertex entry point of its own. Throws GpuError.
+gpu::Program graphicsProgram(std::string_view vertex, std::string_view fragment,
+                             std::span<const shading::ShaderDefine> defines = {});
+
 // A full-screen pass: pass/fullscreen.vert with a fragment entry point. Throws GpuError.
 gpu::Program fullscreenProgram(std::string_view fragment,
                                std::span<const shading::ShaderDefine> defines = {});

@@ -61,13 +61,14 @@ int facePx(const scene::SkyState& state) {
 
 }  // namespace
 
-void splatClouds(const scene::CloudBalls& balls, std::vector<SplatCloud>& out) {
+void splatClouds(const scene::CloudBalls& balls, const scene::CloudBalls& shades,
+                 std::vector<SplatCloud>& out) {
   out.clear();
   for (std::size_t i = 0; i < balls.clouds.size(); ++i) {
     const scene::CloudBalls::Cloud& cloud = balls.clouds[i];
     const std::span<const field::Metaball> own = balls.ballsOf(i);
-    out.push_back(
-        {own, cloud.phase, cloud.albedo, own.size() - (cloud.end - cloud.coarseEnd), cloud.coarseShare});
+    out.push_back({own, cloud.phase, cloud.albedo, own.size() - (cloud.end - cloud.coarseEnd),
+                   cloud.coarseShare, shades.ballsOf(i), cloud.far});
   }
 }
 
@@ -81,8 +82,9 @@ void SkySplats::update(const scene::SkyState& state) {
       state.metaballs->at(state.secondsAfter, {0.0, 0.0, state.scene.camera.eyeM},
                           state.clouds->earthRadiusM(), balls,
                           shadow ? MetaballDetail::kAsShadow : MetaballDetail::kAsSeen);
-    splatClouds(balls, shadow ? shadowClouds_ : clouds_);
   }
+  splatClouds(balls_, shadowBalls_, clouds_);
+  splatClouds(shadowBalls_, shadowBalls_, shadowClouds_);
 }
 
 void SkySplats::draw(const scene::SkyState& state, const SkyTextures& tables, gpu::Program& program) {

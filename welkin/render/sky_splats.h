@@ -14,8 +14,9 @@
 
 namespace welkin::render {
 
-// What SplatPass draws, as spans of those balls.
-void splatClouds(const scene::CloudBalls& balls, std::vector<SplatCloud>& out);
+// What SplatPass draws, as spans of those balls, and of what shades in their place.
+void splatClouds(const scene::CloudBalls& balls, const scene::CloudBalls& shades,
+                 std::vector<SplatCloud>& out);
 
 class SkySplats {
  public:

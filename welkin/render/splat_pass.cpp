@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "welkin/render/programs.h"
+#include "welkin/render/view_cone.h"
 #include "welkin/shading/shader_library.h"
 
 namespace welkin::render {
@@ -33,6 +34,10 @@ struct Fineness {
 constexpr double kLeastPx = 12.0;
 constexpr int kStepPx = 4;
 constexpr Fineness kLiveFineness{64.0, 0.12, 2e6}, kStillFineness{128.0, 0.05, 12e6};
+constexpr PictureFineness kLivePictures{2.0, 4e5}, kStillPictures{1.0, 4e6};
+// A picture has a stack of few slices for what shades it, and its own shade by its shape.
+constexpr StackSize kShadeSize{8};
+
 constexpr int kStacks = 3;  // to the light, to the zenith, from the eye
 // Nearer than the one, in radii of a cloud, there is none from the eye; from the other on it counts in full.
 constexpr double kEyeStackFrom = 1.15, kEyeStackAll = 1.6, kEyeStackPart = 0.4;  // as pass/splat_light.frag
@@ -54,15 +59,11 @@ constexpr int kShadowPx = 1024;
 
 // Floats of a ball in all slices of its three stacks and of those that it shades; few balls need more.
 constexpr std::size_t kValuesInBall = 160;
+// Of what shades a picture.
+constexpr std::size_t kValuesInPicture = 600;
 
 // A sort that has moved so many places for each ball had better begin anew.
 constexpr std::size_t kMostMoves = 24;
-
-gpu::Program programOf(const char* vertex, const char* fragment, const shading::ShaderDefines& defines = {}) {
-  constexpr auto kDialect = shading::ShaderDialect::kGl330;
-  return gpu::Program::graphics(shading::assembleShader(vertex, kDialect, defines),
-                                shading::assembleShader(fragment, kDialect, defines));
-}
 
 bool drawn(const field::Metaball& b) {
   return b.density != 0.0 && b.radiusM > 0.0;
@@ -98,31 +99,6 @@ void atLeast(gpu::Texture2D& texture, std::optional<gpu::Framebuffer>& framebuff
   framebuffer.emplace(texture);
 }
 
-// Cone around the picture.
-struct ViewCone {
-  glm::dvec3 axis;
-  double halfAngle;
-};
-ViewCone coneOf(const shading::ViewParts& view) {
-  const auto ray = [&](float x, float y) {
-    const glm::vec3 r(view.rayScale.x * x + view.rayScale.z, view.rayScale.y * y + view.rayScale.w, -1.0f);
-    return glm::normalize(glm::dvec3(view.enuFromCamera * r));
-  };
-  ViewCone cone{ray(0.0f, 0.0f), 0.0};
-  for (const float x : {-1.0f, 1.0f})
-    for (const float y : {-1.0f, 1.0f})
-      cone.halfAngle =
-          std::max(cone.halfAngle, std::acos(std::clamp(glm::dot(cone.axis, ray(x, y)), -1.0, 1.0)));
-  return cone;
-}
-
-bool mayBeSeen(const ViewCone& cone, const glm::dvec3& centreM, double radiusM) {
-  const double distance = glm::length(centreM);
-  if (distance <= radiusM) return true;
-  const double angle = std::acos(std::clamp(glm::dot(cone.axis, centreM) / distance, -1.0, 1.0));
-  return angle <= cone.halfAngle + std::asin(radiusM / distance);
-}
-
 }  // namespace
 
 struct SplatPass::Block {
@@ -137,13 +113,14 @@ struct SplatPass::Block {
 
 SplatPass::SplatPass(SplatDetail detail)
     : detail_(detail),
-      depth_(programOf("pass/splat_depth.vert", "pass/splat_depth.frag")),
-      light_(programOf("pass/splat_light.vert", "pass/splat_light.frag")) {
+      depth_(graphicsProgram("pass/splat_depth.vert", "pass/splat_depth.frag")),
+      light_(graphicsProgram("pass/splat_light.vert", "pass/splat_light.frag")),
+      pictures_(detail == SplatDetail::kStill ? kStillPictures : kLivePictures) {
   for (std::size_t i = 0; i < eye_.size(); ++i) {
     shading::ShaderDefines defines;
     if (i & 1) defines.emplace_back("WELKIN_DISTANCE", "1");
     if (i & 2) defines.emplace_back("WELKIN_ENGINE_DEPTH", "1");
-    eye_[i] = programOf("pass/splat.vert", "pass/splat.frag", defines);
+    eye_[i] = graphicsProgram("pass/splat.vert", "pass/splat.frag", defines);
   }
 }
 
@@ -151,17 +128,20 @@ SplatPass::~SplatPass() = default;
 
 void SplatPass::reserve(std::size_t clouds, std::size_t balls) {
   blocks_.reserve(clouds);
+  shades_.reserve(clouds);
+  pictures_.reserve(clouds);
   wholes_.reserve(clouds);
   bySize_.reserve(clouds);
   pieces_.reserve(balls);
   order_.reserve(balls);
   distances_.reserve(balls);
   tileOf_.reserve(balls);
-  values_.reserve(kValuesInBall * balls);
+  values_.reserve(kValuesInBall * balls + kValuesInPicture * clouds);
 }
 
 void SplatPass::setSky(const shading::Uniforms& sky, const glm::vec3& toLight) {
   setUniforms(light_, sky);
+  pictures_.setSky(sky);
   toLight_ = toLight;
 }
 
@@ -169,6 +149,8 @@ void SplatPass::setSky(const shading::Uniforms& sky, const glm::vec3& toLight) {
 void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view) {
   const ViewCone cone = coneOf(view);
   blocks_.clear();
+  shades_.clear();
+  pictures_.clear();
   wholes_.clear();
   bySize_.clear();
   const Fineness& fineness = detail_ == SplatDetail::kStill ? kStillFineness : kLiveFineness;
@@ -176,6 +158,24 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
   const auto cube = [&](double px) { return std::pow(std::clamp(px, kLeastPx, fineness.mostPx), 3.0); };
   double cubes = 0.0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const scene::CloudBalls::Far& far = clouds[i].far;
+    if (far.share > 0.0f) {
+      const SplatPictures::Bounds bounds = pictures_.boundsOf(far, view.eyeM);
+      if (mayBeSeen(cone, bounds.centreM, bounds.radiusM)) {
+        pictures_.add(far, view.eyeM);
+        Block& shade = shades_.emplace_back();
+        shade.cloud = static_cast<std::uint32_t>(i);
+        shade.centreM = bounds.centreM;
+        shade.size = kShadeSize;
+        shade.halves[0] = static_cast<float>(bounds.radiusM);
+        shade.halves[1] = 2.0f * shade.halves[0];
+        pictures_.all().back().shadeHalves = {shade.halves[0], shade.halves[1]};
+      }
+      if (far.share >= 1.0f) {
+        wholes_.push_back({bounds.centreM, bounds.radiusM});
+        continue;
+      }
+    }
     const std::optional<field::Box> box = mixed<field::Box>(
         clouds[i],
         [](const field::Metaball& b, std::optional<field::Box>& all) {
@@ -193,7 +193,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     const double radiusM = 0.5 * glm::length(box->high - box->low);
     const double share = radiusM / std::max(glm::length(centreM), 1e-3);
     wholes_.push_back({centreM, radiusM});
-    cubes += cube(finePx(share));
+    cubes += static_cast<double>(1.0f - far.share) * cube(finePx(share));
     if (!mayBeSeen(cone, centreM, radiusM)) continue;
     Block& block = blocks_.emplace_back();
     block.cloud = static_cast<std::uint32_t>(i);
@@ -201,8 +201,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     block.share = static_cast<float>(share);
     bySize_.push_back(static_cast<std::uint32_t>(blocks_.size() - 1));
   }
-  if (blocks_.empty()) return;
-  const double coarser = std::cbrt(std::min(fineness.cubes / cubes, 1.0));
+  const double coarser = std::cbrt(std::min(fineness.cubes / std::max(cubes, 1.0), 1.0));
   // The largest first.
   std::sort(bySize_.begin(), bySize_.end(), [this](std::uint32_t a, std::uint32_t b) {
     return blocks_[a].share != blocks_[b].share ? blocks_[a].share > blocks_[b].share : a < b;
@@ -222,7 +221,17 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     b.x = x, b.y = row;
     x += kStacks * b.size.width();
   }
-  const int height = stacksHeight_ = row + last.height();
+  if (x > 0) row += last.height();
+  x = 0;
+  for (std::size_t i = 0; i < shades_.size(); ++i) {
+    shades_[i].x = x, shades_[i].y = row;
+    pictures_.all()[i].shade = {x, row};
+    x += kShadeSize.sidePx;
+    if (x + kShadeSize.sidePx <= stacksWidth && i + 1 < shades_.size()) continue;
+    row += kShadeSize.sidePx;
+    x = 0;
+  }
+  const int height = stacksHeight_ = std::max(row, 1);
   atLeast(depths_, toDepths_, stacksWidth, height, gpu::Format::kRgba32F);
 }
 
@@ -300,7 +309,7 @@ void SplatPass::addShades(std::span<const SplatCloud> clouds, const glm::dvec3& 
         middle.z > halfDepthM + whole.radiusM)
       continue;
     const double share = 1.0 - glm::smoothstep(2.0 / 3.0, 1.0, aheadM / kShadeReachM);
-    for (const field::Metaball& b : clouds[c].balls) {
+    for (const field::Metaball& b : clouds[c].shades()) {
       if (!drawn(b)) continue;
       const glm::dvec3 at = (b.centreM - eyeM - block.centreM) * axes;
       if (std::max(std::abs(at.x), std::abs(at.y)) > half + b.radiusM) continue;
@@ -320,6 +329,7 @@ void SplatPass::drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3&
     b.halves[4] = b.halves[5] = 0.0f;
     if (b.share * kEyeStackFrom < 1.0) addStack(clouds[b.cloud], eyeM, axesOf(-b.centreM), 2, b);
   }
+  for (const Block& shade : shades_) addShades(clouds, eyeM, sun, shade);
   inSlices_.upload(values_);
   const gpu::Tile area{0, 0, depths_.width(), stacksHeight_};
   depth_.set("uPerTexel", 1.0f / glm::vec2(area.width, area.height));
@@ -329,13 +339,30 @@ void SplatPass::drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3&
   light_.set("uSkyStack", glm::mat3(sky));
 }
 
+void SplatPass::addPieces(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM) {
+  pieces_.clear();
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const SplatCloud& cloud = clouds[blocks_[i].cloud];
+    for (const field::Metaball& b : cloud.balls)
+      if (drawn(b))
+        pieces_.push_back({glm::vec3(b.centreM - eyeM), static_cast<float>(b.radiusM),
+                           static_cast<float>(b.density), static_cast<std::uint32_t>(i)});
+  }
+  const std::span<const SplatPictures::Picture> pictures = pictures_.all();
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    pieces_.push_back(
+        {pictures[i].centreM, pictures[i].radiusM, 0.0f, kPicture | static_cast<std::uint32_t>(i)});
+}
+
 // Insertion from the last frame's order: next to nothing where little has moved. The order is total, by
 // distance and then by number, so that it is the same however it was found. A ball's distance is that of a
-// place in its front half, which is what is seen of it.
+// place in its front half, which is what is seen of it; a picture's, that of the cloud's front, before its
+// balls.
 void SplatPass::sort() {
   distances_.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i)
-    distances_[i] = glm::length(pieces_[i].centreM) - 0.5f * pieces_[i].radiusM;
+    distances_[i] =
+        glm::length(pieces_[i].centreM) - (pieces_[i].block & kPicture ? 1.0f : 0.5f) * pieces_[i].radiusM;
   const auto before = [this](std::uint32_t a, std::uint32_t b) {
     return distances_[a] != distances_[b] ? distances_[a] > distances_[b] : a < b;
   };
@@ -368,6 +395,7 @@ void SplatPass::findTiles(double pixelRad) {
     const double radiusPx = static_cast<double>(pieces_[i].radiusM) / (centreM * pixelRad);
     const int side = static_cast<int>(std::ceil(std::min(rays.perPx * (radiusPx - 1.0), 1e3)));
     tileOf_[i].z = static_cast<float>(std::clamp(side, rays.least, rays.most));
+    if (pieces_[i].block & kPicture) continue;
     ++counts[static_cast<std::size_t>(tileOf_[i].z)];
   }
   int most = rays.most;
@@ -390,13 +418,16 @@ void SplatPass::findTiles(double pixelRad) {
     const int inRow = kTilesWidthPx / side, count = static_cast<int>(counts[static_cast<std::size_t>(side)]);
     tilesHeight_ += side * ((count + inRow - 1) / inRow);
   }
-  for (glm::vec3& tile : tileOf_) {
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    if (pieces_[i].block & kPicture) continue;
+    glm::vec3& tile = tileOf_[i];
     const int side = std::min(static_cast<int>(tile.z), most);
     glm::ivec2& at = next[static_cast<std::size_t>(side)];
     tile = {at.x, at.y, side};
     at.x += side;
     if (at.x + side > kTilesWidthPx) at = {0, at.y + side};
   }
+  tilesHeight_ = pictures_.findTiles(pixelRad, kTilesWidthPx, tilesHeight_);
 }
 
 void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tables) {
@@ -407,7 +438,9 @@ void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tab
   light_.set("uRayScale", view.rayScale);
   tables.bind(light_);
   light_.bind("uDepths", depths_);
-  inTiles_.draw(light_, {toTiles_->id(), {0, 0, kTilesWidthPx, tilesHeight_}}, {});
+  const gpu::Target tiles(toTiles_->id(), {0, 0, kTilesWidthPx, tilesHeight_});
+  inTiles_.draw(light_, tiles, {});
+  pictures_.draw(view, tables, {depths_, glm::mat3(axesOf(toLight_)), kShadeSize.sidePx}, tiles);
 }
 
 void SplatPass::drawBalls(const shading::ViewParts& view, const SplatTarget& to) {
@@ -484,20 +517,15 @@ void SplatPass::setShadow(gpu::Program& program) const {
 void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewParts& view,
                      const SkyTextures& tables, const SplatTarget& to) {
   findBlocks(clouds, view);
-  if (blocks_.empty()) return;
+  if (blocks_.empty() && shades_.empty()) return;
   drawStacks(clouds, view.eyeM);
-
-  pieces_.clear();
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    for (const field::Metaball& b : clouds[blocks_[i].cloud].balls)
-      if (drawn(b))
-        pieces_.push_back({glm::vec3(b.centreM - view.eyeM), static_cast<float>(b.radiusM),
-                           static_cast<float>(b.density), static_cast<std::uint32_t>(i)});
+  addPieces(clouds, view.eyeM);
   sort();
   findTiles(static_cast<double>(view.pixelRad));
   values_.clear();
   for (const std::uint32_t i : order_) {
     const Piece& b = pieces_[i];
+    if (b.block & kPicture) continue;
     const glm::vec3& tile = tileOf_[i];
     const Block& block = blocks_[b.block];
     const SplatCloud& cloud = clouds[block.cloud];
@@ -536,9 +564,17 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
   values_.clear();
   for (const std::uint32_t i : order_) {
     const Piece& b = pieces_[i];
+    if (b.block & kPicture) {
+      const SplatPictures::Picture& p = pictures_.all()[b.block & ~kPicture];
+      values_.insert(values_.end(), {b.centreM.x, b.centreM.y, b.centreM.z, b.radiusM, p.texelM,
+                                     static_cast<float>(p.corner.x), static_cast<float>(p.corner.y),
+                                     -static_cast<float>(1024 * p.texels.x + p.texels.y)});
+      continue;
+    }
     const glm::vec3& tile = tileOf_[i];
-    values_.insert(values_.end(),
-                   {b.centreM.x, b.centreM.y, b.centreM.z, b.radiusM, b.density, tile.x, tile.y, tile.z});
+    const float share = 1.0f - clouds[blocks_[b.block].cloud].far.share;
+    values_.insert(values_.end(), {b.centreM.x, b.centreM.y, b.centreM.z, b.radiusM, share * b.density,
+                                   tile.x, tile.y, tile.z});
   }
   quads_.upload(values_);
   drawBalls(view, to);

@@ -28,6 +28,7 @@
 #include "welkin/gpu/texel_reader.h"
 #include "welkin/render/flare_pass.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/render/splat_pictures.h"
 #include "welkin/scene/metaballs.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
@@ -46,6 +47,11 @@ struct SplatCloud {
   // share. What is found for a cloud's extent then fades with them.
   std::size_t coarse = ~std::size_t{0};
   float coarseShare = 1.0f;
+  // As what it shades others, where fewer balls will do.
+  std::span<const field::Metaball> shade{};
+  std::span<const field::Metaball> shades() const { return shade.empty() ? balls : shade; }
+  // Of it that is a picture (render/splat_pictures.h), and not balls.
+  scene::CloudBalls::Far far{};
 };
 
 struct SplatTarget {
@@ -93,8 +99,9 @@ class SplatPass {
   struct Piece {
     glm::vec3 centreM;  // from the eye
     float radiusM, density;
-    std::uint32_t block;
+    std::uint32_t block;  // or kPicture and the picture's number
   };
+  static constexpr std::uint32_t kPicture = 1u << 31;
   void findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view);
   void drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
@@ -108,6 +115,7 @@ class SplatPass {
   void addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
                  const Block& block);
   void sort();
+  void addPieces(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void findTiles(double pixelRad);
   void drawLight(const shading::ViewParts& view, const SkyTextures& tables);
   void drawBalls(const shading::ViewParts& view, const SplatTarget& to);
@@ -122,6 +130,8 @@ class SplatPass {
   gpu::TexelReader depthReader_;
   glm::vec3 toLight_{0.0f, 0.0f, 1.0f};
   std::vector<Block> blocks_;
+  std::vector<Block> shades_;  // of pictures, for what shades them
+  SplatPictures pictures_;
   std::vector<Whole> wholes_;  // of each cloud; radius 0: none
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> order_;  // far to near, as the last frame had it

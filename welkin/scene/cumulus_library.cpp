@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/scene/cumulus_library.h"
 
+#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 
 #include "welkin/field/cloud_map.h"
 #include "welkin/field/cumulus_tower.h"
@@ -15,6 +17,28 @@ constexpr std::array<std::size_t, kLibraryLevels> kBalls = {12, 60, 240};
 constexpr double kWidthM = 1200.0, kVoxelM = 40.0;
 constexpr double kEffort = 0.4;
 constexpr int kBelow = 6;  // voxels of clear air under the base, so that balls do not bulge out of it
+
+// The mean square of the distance from the centre in a ball of radius 1.
+constexpr double kMeanSquare =
+    (1.0 / 5 - 22.0 / 63 + 17.0 / 81 - 4.0 / 99) / (1.0 / 3 - 22.0 / 45 + 17.0 / 63 - 4.0 / 81);
+
+// With the mass, the middle and the mean square of the distance from it of all of them.
+field::Metaball inOne(const std::vector<field::Metaball>& balls) {
+  const double mass = field::integralOf(balls);
+  const auto share = [&](const field::Metaball& b) {
+    return b.density * field::kWyvillIntegral * b.radiusM * b.radiusM * b.radiusM / mass;
+  };
+  field::Metaball one;
+  for (const field::Metaball& b : balls) one.centreM += share(b) * b.centreM;
+  double square = 0.0;
+  for (const field::Metaball& b : balls) {
+    const glm::dvec3 away = b.centreM - one.centreM;
+    square += share(b) * (glm::dot(away, away) + kMeanSquare * b.radiusM * b.radiusM);
+  }
+  one.radiusM = std::sqrt(square / kMeanSquare);
+  one.density = mass / (field::kWyvillIntegral * one.radiusM * one.radiusM * one.radiusM);
+  return one;
+}
 
 LibraryCloud made(double heightM, std::int64_t seed) {
   field::CumulusParams tower;
@@ -52,6 +76,7 @@ LibraryCloud made(double heightM, std::int64_t seed) {
     }
     cloud.radii[i] = field::medianRadiusOf(cloud.levels[i]);
   }
+  cloud.whole = {inOne(cloud.levels[0])};
   return cloud;
 }
 

@@ -16,6 +16,8 @@ struct LibraryCloud {
   // As wide as 1, on the plane z = 0, in the middle of it; density about 1 inside. Fewest balls first.
   std::array<std::vector<field::Metaball>, kLibraryLevels> levels;
   std::array<double, kLibraryLevels> radii{};  // the median of each level's balls
+  // All of it in one ball, as wide on the average and holding as much: its shadow from far away.
+  std::vector<field::Metaball> whole;
   double height = 1.0;
 };
 

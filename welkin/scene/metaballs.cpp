@@ -20,6 +20,9 @@ namespace {
 constexpr double kBallRad = 0.003;
 constexpr double kLayerBallRad = 0.008;  // of a layer's, which are many
 constexpr double kShadowBalls = 3.0;     // so many times as large in shadows
+// A layer's cloud becomes a picture from so many of its widths on, over that share of them.
+constexpr double kPictureFrom = 3.5, kPictureFade = 0.45;
+constexpr double kOpaque = 4.0;  // optical depth
 // Two levels fade into one another over that share of the distance at which the coarser one would do.
 constexpr double kFade = 0.3;
 
@@ -39,6 +42,20 @@ LevelShare levelAt(std::span<const double> radiiM, double ballRad, double distan
   return {finest, 1.0};
 }
 
+// A cloud of the library as what shades, with one ball as its coarsest level. That is soft: half its radius
+// counts.
+struct ShadeLevels {
+  const LibraryCloud& cloud;
+  const std::vector<field::Metaball>& operator[](std::size_t level) const {
+    return level == 0 ? cloud.whole : cloud.levels[level - 1];
+  }
+  std::array<double, kLibraryLevels + 1> radii() const {
+    std::array<double, kLibraryLevels + 1> all{0.5 * cloud.whole[0].radiusM};
+    std::ranges::copy(cloud.radii, all.begin() + 1);
+    return all;
+  }
+};
+
 // Appends the balls of both, f(ball) each, and returns where those of the coarser one end.
 template <class Levels, class F>
 std::size_t append(const Levels& levels, const LevelShare& seen, F&& f, std::vector<field::Metaball>& out) {
@@ -55,6 +72,16 @@ std::size_t append(const Levels& levels, const LevelShare& seen, F&& f, std::vec
 }
 
 }  // namespace
+
+// First what is dense, which little of the density makes opaque, then what is thin, evenly both.
+float pictureShare(double widths, double opticalDepth) {
+  const double x = (widths / kPictureFrom - 1.0) / kPictureFade;
+  if (x >= 1.0) return 1.0f;
+  const double depth = std::max(opticalDepth, 1e-3), opaque = std::min(depth, kOpaque);
+  const double dense = -std::log(1.0 - glm::smoothstep(0.0, 0.6, x) * (1.0 - std::exp(-opaque))) / depth;
+  const double thin = glm::smoothstep(0.5, 1.0, x);
+  return static_cast<float>(1.0 - (1.0 - dense) * (1.0 - thin));
+}
 
 void describe(MetaballCloud& c, ParamVisitor& v) {
   v.value({"file", "", "file of metaballs, beside the scene file, as `welkin fit` and `welkin cloud` write"},
@@ -187,25 +214,41 @@ void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRa
       b.centreM += glm::dvec3(drifted, 0.0);
       b.centreM = overEarth(b.centreM, eyeM, earthRadiusM);
     }
-    out.clouds.push_back({out.balls.size(), c.phase, static_cast<float>(c.albedo), coarseEnd,
-                          static_cast<float>(level.share)});
+    out.clouds.push_back({out.balls.size(),
+                          c.phase,
+                          static_cast<float>(c.albedo),
+                          coarseEnd,
+                          static_cast<float>(level.share),
+                          {}});
   }
   for (const Filled& filled : layers_) {
     filled.layer.cloudsAt(secondsAfter, driftOf(filled, secondsAfter), glm::dvec2(eyeM), out.filled);
     for (const MetaballLayer::Cloud& cloud : out.filled) {
       const double distanceM = glm::length(cloud.baseM - eyeM);
       const LibraryCloud& shape = filled.layer.shape(cloud);
-      const LevelShare level = levelAt(shape.radii, kLayerBallRad, distanceM / cloud.widthM, detail);
-      const std::size_t coarseEnd = append(
-          shape.levels, level,
-          [&](const field::Metaball& b) {
-            field::Metaball at = placed(b, cloud);
-            at.centreM = overEarth(at.centreM, eyeM, earthRadiusM);
-            return at;
-          },
-          out.balls);
-      out.clouds.push_back(
-          {out.balls.size(), MetaballPhase::kDroplets, 1.0f, coarseEnd, static_cast<float>(level.share)});
+      CloudBalls::Far far;
+      if (detail == MetaballDetail::kAsSeen)
+        far = {&shape, cloud, pictureShare(distanceM / cloud.widthM, cloud.extinctionPerM * cloud.widthM)};
+      if (far.share > 0.0f) far.placed.baseM = overEarth(cloud.baseM, eyeM, earthRadiusM);
+      if (far.share >= 1.0f) {
+        out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f, out.balls.size(), 1.0f, far});
+        continue;
+      }
+      const auto inSky = [&](const field::Metaball& b) {
+        field::Metaball at = placed(b, cloud);
+        at.centreM = overEarth(at.centreM, eyeM, earthRadiusM);
+        return at;
+      };
+      const double widths = distanceM / cloud.widthM;
+      const ShadeLevels shades{shape};
+      const LevelShare level = detail == MetaballDetail::kAsShadow
+                                   ? levelAt(shades.radii(), kLayerBallRad, widths, detail)
+                                   : levelAt(shape.radii, kLayerBallRad, widths, detail);
+      const std::size_t coarseEnd = detail == MetaballDetail::kAsShadow
+                                        ? append(shades, level, inSky, out.balls)
+                                        : append(shape.levels, level, inSky, out.balls);
+      out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f, coarseEnd,
+                            static_cast<float>(level.share), far});
     }
   }
 }

@@ -44,9 +44,19 @@ struct MetaballCloud {
 void describe(MetaballCloud& c, ParamVisitor& v);
 void validate(const MetaballCloud& c);  // throws ParameterError: no file
 
+// Of a layer's cloud, so many of its widths away and of that optical depth, what a picture has of its density
+// and balls have not. Before its balls, the picture of what is dense then fades in evenly with the distance.
+float pictureShare(double widths, double opticalDepth);
+
 // Balls of many clouds at one instant, cloud by cloud, in metres east, north and above the ground about the
 // eye; their densities are extinctions, 1/m.
 struct CloudBalls {
+  // A cloud of the library that is far away, for who draws a picture of it in the place of its balls.
+  struct Far {
+    const LibraryCloud* shape = nullptr;  // kept for good
+    MetaballLayer::Cloud placed;          // the base as the balls are placed
+    float share = 0.0f;  // of it that is drawn as a picture: where it is 1, there are no balls
+  };
   struct Cloud {
     std::size_t end = 0;  // of its balls; they begin where the one before ends
     MetaballPhase phase = MetaballPhase::kDroplets;
@@ -55,6 +65,7 @@ struct CloudBalls {
     // and its share.
     std::size_t coarseEnd = end;
     float coarseShare = 1.0f;
+    Far far{};
   };
   std::vector<field::Metaball> balls;
   std::vector<Cloud> clouds;
@@ -67,8 +78,9 @@ struct CloudBalls {
 };
 
 // As an eye sees them: coarser versions of clouds that are far away, fading into one another with the
-// distance; the same, coarser by far, as their shadows on the ground are soft; or all of them in full.
-enum class MetaballDetail { kAsSeen, kAsShadow, kFinest };
+// distance, and in the end into pictures; the same in balls alone; coarser by far, as their shadows are soft;
+// or all of them in full.
+enum class MetaballDetail { kAsSeen, kAsBalls, kAsShadow, kFinest };
 
 // All clouds at one instant in full detail, as shapes and where they stand.
 struct MetaballInstances {

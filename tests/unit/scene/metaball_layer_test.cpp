@@ -2,7 +2,9 @@
 // Skies filled with clouds of metaballs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tests/testing/skies.h"
 #include "welkin/core/parallel.h"
@@ -78,6 +80,66 @@ TEST(MetaballLayer, IsAPureFunctionOfTime) {
   EXPECT_NE(now.balls, later.balls);
   EXPECT_NEAR(static_cast<double>(later.clouds.size()) / static_cast<double>(now.clouds.size()), 1.0, 0.15);
   EXPECT_NEAR(other.cover.at(0).deliveredOktas, 3.0, 1.5);
+}
+
+// Near clouds are balls and far ones pictures, those between both, the more a picture the farther; who asks
+// for balls alone has the same clouds.
+TEST(MetaballLayer, FarCloudsArePictures) {
+  const SkyState state = buildSky(heaps(3.0), 0.0);
+  const glm::dvec3 eyeM(3000.0, -2000.0, 700.0);
+  CloudBalls seen, again, all;
+  state.metaballs->at(60.0, eyeM, state.clouds->earthRadiusM(), seen);
+  state.metaballs->at(60.0, eyeM, state.clouds->earthRadiusM(), again);
+  state.metaballs->at(60.0, eyeM, state.clouds->earthRadiusM(), all, MetaballDetail::kAsBalls);
+  EXPECT_EQ(seen.balls, again.balls);
+  EXPECT_LT(2 * seen.balls.size(), all.balls.size());
+  ASSERT_EQ(seen.clouds.size(), all.clouds.size());
+  std::size_t fading = 0;
+  for (std::size_t i = 0; i < seen.clouds.size(); ++i) {
+    const CloudBalls::Far& far = seen.clouds[i].far;
+    EXPECT_EQ(far.share, again.clouds[i].far.share);
+    EXPECT_EQ(all.clouds[i].far.share, 0.0f);
+    if (far.share >= 1.0f)
+      EXPECT_TRUE(seen.ballsOf(i).empty());
+    else
+      EXPECT_TRUE(std::ranges::equal(seen.ballsOf(i), all.ballsOf(i)));
+    fading += far.share > 0.0f && far.share < 1.0f ? 1 : 0;
+    const double widths = glm::length(far.placed.baseM - eyeM) / far.placed.widthM;
+    // The earth's curve changes little here.
+    EXPECT_TRUE(far.share == 0.0f || widths > 3.49);
+    EXPECT_TRUE(far.share == 0.0f || far.share == 1.0f || widths < 5.09);
+  }
+  EXPECT_GT(fading, 2u);
+}
+
+// In the thick of a cloud and at its edges the picture comes to hide the balls behind it without a jump.
+TEST(MetaballLayer, PicturesFadeInEvenly) {
+  for (const double depth : {0.0, 0.1, 5.0, 60.0})
+    for (const double part : {1.0, 0.1, 0.02}) {
+      EXPECT_EQ(pictureShare(3.4, depth), 0.0f);
+      EXPECT_EQ(pictureShare(5.2, depth), 1.0f);
+      double before = 0.0;
+      for (double widths = 3.4; widths < 5.2; widths += 0.01) {
+        const double all = std::max(part * depth, 1e-3),
+                     share = static_cast<double>(pictureShare(widths, depth));
+        const double hidden = (1.0 - std::exp(-share * all)) / (1.0 - std::exp(-all));
+        EXPECT_GE(hidden, before - 1e-4);
+        EXPECT_LT(hidden - before, 0.04) << widths << " " << depth << " " << part;
+        before = hidden;
+      }
+    }
+}
+
+// The one ball that shades from far away holds what the coarsest level holds.
+TEST(CumulusLibrary, TheWholeHoldsAllOfACloud) {
+  for (const auto* family : {&cumulusTowers(), &flatCumulus()})
+    for (const LibraryCloud& cloud : *family) {
+      ASSERT_EQ(cloud.whole.size(), 1u);
+      EXPECT_NEAR(field::integralOf(cloud.whole) / field::integralOf(cloud.levels[0]), 1.0, 1e-9);
+      EXPECT_GT(cloud.whole[0].radiusM, cloud.radii[0]);
+      EXPECT_LT(cloud.whole[0].radiusM, 1.0);
+      EXPECT_LT(std::hypot(cloud.whole[0].centreM.x, cloud.whole[0].centreM.y), 0.2);
+    }
 }
 
 TEST(MetaballLayer, OnlyHeapsAreMadeOfBalls) {
