@@ -354,8 +354,9 @@ int run(int argc, char** argv) {
           // As cloudSource() in lib/march.glsl has it.
           constexpr int kSamples = 3;  // the qualities have 2 to 5
           const float extinction = clouds.extinction(q, detail);
-          const float reach = std::min(kSamples * volume.cellM(q),
-                                       std::max((state.clouds->layers()[0].topM - q.z) / static_cast<float>(sun.z), 1.0f));
+          const float reach =
+              std::min(kSamples * volume.cellM(q),
+                       std::max((state.clouds->layers()[0].topM - q.z) / static_cast<float>(sun.z), 1.0f));
           if (extinction <= 0.0f) continue;
           float done = reach / std::pow(kSamples + 1.0f, 3.0f), near = extinction * done;
           const auto dither = static_cast<float>(unit(r));

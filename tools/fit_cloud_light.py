@@ -3,7 +3,10 @@
 """Fits the network of shaders/lib/cloud_light_fit.glsl to examples written by bench/light_samples.
 
     light_samples EXAMPLES.f32 200 700 8 1
-    tools/fit_cloud_light.py EXAMPLES.f32... [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
+    light_samples LIKE.f32 SCENE.toml 700 8 101
+    tools/fit_cloud_light.py EXAMPLES.f32... LIKE.f32 LIKE.f32 [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
+
+Examples of a file that is named several times count as often.
 
 Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
 used. The network: twenty numbers, two layers of twenty-four x / (1 + |x|), two numbers: the logarithm of a factor of

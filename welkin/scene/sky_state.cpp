@@ -166,8 +166,8 @@ AmbientLight ambientLight(const SkyState& s) {
   const glm::vec3 none = hazeLuminance(skyOnGround, albedo / pi * (skyOnGround + direct));
   a.cloudGlow = glm::max(a.haze - none, glm::vec3(0.0f));
   // Under a low sun nearly all of it is in their shade.
-  addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir),
-                    taken * aside, a);
+  addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), taken * aside,
+                    a);
   return a;
 }
 

@@ -188,8 +188,10 @@ MarchSettings marchSettings(scene::Quality quality) {
 }
 
 Uniforms marchUniforms(const MarchSettings& settings) {
-  return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
-          {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
+  return {{"uStepNearM", settings.stepNearM},
+          {"uStepShare", settings.stepShare},
+          {"uStepLong", settings.stepLong},
+          {"uMaxSteps", settings.maxSteps},
           {"uSunSamples", settings.sunSamples}};
 }
 
