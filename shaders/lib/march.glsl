@@ -77,7 +77,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says. It knows nothing of
   // forms smaller than its cells, and a surface that faces the sun would lie in its own shadow: there is a sample for every cell of the
   // way, as far as there is cloud.
-  float edge = (uKeyDirection.z > 0.0 ? uBands[band].y : uBands[band].x) - q.z;
+  float edge = (uKeyDirection.z >= 0.0 ? uBands[band].y : uBands[band].x) - q.z;
   float reachM = min(float(uSunSamples) * lightVolumeCellM(uLightVolume, q), max(edge / uKeyDirection.z, 1.0));
   float done = reachM / pow(float(uSunSamples) + 1.0, 3.0);
   float near = point.extinction * done;

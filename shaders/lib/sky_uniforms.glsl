@@ -50,18 +50,18 @@ vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, fl
 }
 vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit); }
 
+// The same by the mean share.
+void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
+  aerialLit(dir, distanceM, inscatter, through);
+  inscatter = shadedAir(inscatter, through, uClearAir);
+}
+
 // Light of clouds as it arrives through air, of what they hide. Haze scatters mostly forward: a part of what it takes from a ray is as if it had
 // not been turned, for there is cloud about the ray too. In the place of that is the mean light about the eye that the air has been given.
 const float kHazeForward = 0.3;
 vec3 cloudsThroughAir(vec3 luminance, float hidden, vec3 through) {
   float red = max(through.x, 1e-4);  // haze takes as much of all colours, molecules little of red
   return luminance * through + (pow(red, -kHazeForward) - 1.0) * through * (luminance - hidden * uHazeLuminance);
-}
-
-// The same by the mean share.
-void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
-  aerialLit(dir, distanceM, inscatter, through);
-  inscatter = shadedAir(inscatter, through, uClearAir);
 }
 
 // Mean radiance of what is not the key light, from above (sky) and below (ground) at a height.
@@ -81,7 +81,7 @@ vec2 sphereCrossings(float h, float dirZ) {
 
 // Light from above and from below the horizon that clouds scatter towards an eye that looks along a direction: they scatter forward, so
 // that what lies behind them counts more; and what lies overhead, as it finds its way in more easily than what comes slanting. Weights
-// linear in the direction, which match where paths of the reference renderer end, in the scenes of bench/truth, within a tenth.
+// linear in the direction, which match where paths of the reference renderer end, in most scenes of bench/truth, within a seventh.
 struct AroundClouds {
   vec3 above, aboveLow, aboveHigh; // at the ground, at 2 km, at 10 km
   vec3 below, belowHigh;           // at 2 km, at 10 km

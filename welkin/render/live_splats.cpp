@@ -30,7 +30,7 @@ void LiveSplats::change(const scene::SkyState& state) {
   }
   clouds_.reserve(kRoom * balls_.clouds.size());
   shadowClouds_.reserve(kRoom * shadowBalls_.clouds.size());
-  pass_.reserve(kRoom * balls_.clouds.size(), kRoom * balls_.balls.size());
+  pass_.reserve(kRoom * balls_.clouds.size(), kRoom * balls_.balls.size(), state.metaballs->shapes());
   eyeM_.reset();
 }
 

@@ -126,10 +126,11 @@ SplatPass::SplatPass(SplatDetail detail)
 
 SplatPass::~SplatPass() = default;
 
-void SplatPass::reserve(std::size_t clouds, std::size_t balls) {
+void SplatPass::reserve(std::size_t clouds, std::size_t balls,
+                        std::span<const scene::LibraryCloud* const> shapes) {
   blocks_.reserve(clouds);
   shades_.reserve(clouds);
-  pictures_.reserve(clouds);
+  pictures_.reserve(clouds, shapes);
   wholes_.reserve(clouds);
   bySize_.reserve(clouds);
   pieces_.reserve(balls);

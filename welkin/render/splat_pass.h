@@ -72,8 +72,9 @@ class SplatPass {
   explicit SplatPass(SplatDetail detail = SplatDetail::kLive);
   ~SplatPass();
 
-  // Makes room for so many clouds and balls around the eye.
-  void reserve(std::size_t clouds, std::size_t balls);
+  // Makes room for so many clouds and balls around the eye, and ready for pictures of such clouds.
+  void reserve(std::size_t clouds, std::size_t balls,
+               std::span<const scene::LibraryCloud* const> shapes = {});
 
   // What all draws under one sky share; before draws and whenever the sky has changed.
   void setSky(const shading::Uniforms& sky, const glm::vec3& toLight);

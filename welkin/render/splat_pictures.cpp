@@ -89,10 +89,12 @@ glm::dvec3 turned(const glm::dvec3& p, double turnRad) {
 SplatPictures::SplatPictures(const PictureFineness& fineness)
     : fineness_(fineness), light_(graphicsProgram("pass/splat_picture.vert", "pass/splat_picture.frag")) {}
 
-void SplatPictures::reserve(std::size_t pictures) {
+void SplatPictures::reserve(std::size_t pictures, std::span<const scene::LibraryCloud* const> shapes) {
   pictures_.reserve(pictures);
   byHeight_.reserve(pictures);
   values_.reserve(kFloatsInTile * pictures);
+  for (const scene::LibraryCloud* shape : shapes) shapeOf(*shape);
+  if (!shapes.empty()) fillGrids();
 }
 
 void SplatPictures::setSky(const shading::Uniforms& sky) {

@@ -33,7 +33,8 @@ class SplatPictures {
  public:
   explicit SplatPictures(const PictureFineness& fineness);
 
-  void reserve(std::size_t pictures);
+  // Room for so many; with the fields of the clouds' shapes, which are made at the first picture of one else.
+  void reserve(std::size_t pictures, std::span<const scene::LibraryCloud* const> shapes);
   void setSky(const shading::Uniforms& sky);
 
   // In a texture for all of them; and the stack of what shades each, in lib/splat_stack.glsl's.

@@ -71,16 +71,15 @@ MetaballLayer::MetaballLayer(const weather::Layer& layer, std::uint64_t seed, do
   threshold_ = high;
 }
 
-const LibraryCloud& MetaballLayer::shape(const Cloud& cloud) const {
-  return libraryOf(flat_)[cloud.shape];
+const std::vector<LibraryCloud>& MetaballLayer::library() const {
+  return libraryOf(flat_);
 }
 
 void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
                              std::vector<Cloud>& out) const {
   out.clear();
   if (threshold_ <= 0.0) return;
-  const std::vector<LibraryCloud>& library = libraryOf(flat_);
-  const double widthM = widestM(layer_, library);
+  const double widthM = widestM(layer_, library());
   const glm::dvec2 middle = (eyeM - driftedM) / cellM_;
   const double reach = reachM_ / cellM_;
   for (auto j = static_cast<std::int64_t>(std::floor(middle.y - reach)); j <= middle.y + reach; ++j)
@@ -100,7 +99,7 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
       cloud.widthM =
           widthM * (kLeastSize + (1.0 - kLeastSize) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
       cloud.turnRad = 2.0 * kPi * random.uniform();
-      cloud.shape = random.below(static_cast<std::uint32_t>(library.size()));
+      cloud.shape = random.below(static_cast<std::uint32_t>(library().size()));
       cloud.extinctionPerM = layer_.extinctionPerM * glm::smoothstep(0.0, 1.0, 3.0 * age);
       out.push_back(cloud);
     }

@@ -29,8 +29,9 @@ class MetaballLayer {
   // Those within reach of an eye, when the lattice has drifted so far.
   void cloudsAt(double secondsAfter, const glm::dvec2& driftedM, const glm::dvec2& eyeM,
                 std::vector<Cloud>& out) const;
-  // What it is made of.
-  const LibraryCloud& shape(const Cloud& cloud) const;
+  // What it is made of, and all that its clouds are made of.
+  const LibraryCloud& shape(const Cloud& cloud) const { return library()[cloud.shape]; }
+  const std::vector<LibraryCloud>& library() const;
 
   // Optical depths in directions spread evenly over the hemisphere, from the ground at the place.
   std::vector<float> opticalDepths(double secondsAfter, const glm::dvec2& driftedM, int directions) const;

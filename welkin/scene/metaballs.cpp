@@ -183,7 +183,7 @@ MetaballInstances MetaballSky::instancesAt(double secondsAfter, const glm::dvec2
     std::size_t& first = firstShapes[filled.layer.isFlat() ? 1 : 0];
     if (first == 0) {
       first = all.shapes.size() + 1;
-      for (const LibraryCloud& shape : filled.layer.isFlat() ? flatCumulus() : cumulusTowers()) {
+      for (const LibraryCloud& shape : filled.layer.library()) {
         const std::size_t begin = all.balls.size();
         all.balls.insert(all.balls.end(), shape.levels.back().begin(), shape.levels.back().end());
         endShape(begin);
@@ -193,6 +193,13 @@ MetaballInstances MetaballSky::instancesAt(double secondsAfter, const glm::dvec2
       all.instances.push_back({first - 1 + cloud.shape, cloud.baseM - glm::dvec3(eyeM, 0.0), cloud.widthM,
                                cloud.turnRad, cloud.extinctionPerM});
   }
+  return all;
+}
+
+std::vector<const LibraryCloud*> MetaballSky::shapes() const {
+  std::vector<const LibraryCloud*> all;
+  for (const Filled& filled : layers_)
+    for (const LibraryCloud& shape : filled.layer.library()) all.push_back(&shape);
   return all;
 }
 
@@ -224,11 +231,11 @@ void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRa
   for (const Filled& filled : layers_) {
     filled.layer.cloudsAt(secondsAfter, driftOf(filled, secondsAfter), glm::dvec2(eyeM), out.filled);
     for (const MetaballLayer::Cloud& cloud : out.filled) {
-      const double distanceM = glm::length(cloud.baseM - eyeM);
+      const double widths = glm::length(cloud.baseM - eyeM) / cloud.widthM;
       const LibraryCloud& shape = filled.layer.shape(cloud);
       CloudBalls::Far far;
       if (detail == MetaballDetail::kAsSeen)
-        far = {&shape, cloud, pictureShare(distanceM / cloud.widthM, cloud.extinctionPerM * cloud.widthM)};
+        far = {&shape, cloud, pictureShare(widths, cloud.extinctionPerM * cloud.widthM)};
       if (far.share > 0.0f) far.placed.baseM = overEarth(cloud.baseM, eyeM, earthRadiusM);
       if (far.share >= 1.0f) {
         out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f, out.balls.size(), 1.0f, far});
@@ -239,16 +246,18 @@ void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRa
         at.centreM = overEarth(at.centreM, eyeM, earthRadiusM);
         return at;
       };
-      const double widths = distanceM / cloud.widthM;
-      const ShadeLevels shades{shape};
-      const LevelShare level = detail == MetaballDetail::kAsShadow
-                                   ? levelAt(shades.radii(), kLayerBallRad, widths, detail)
-                                   : levelAt(shape.radii, kLayerBallRad, widths, detail);
-      const std::size_t coarseEnd = detail == MetaballDetail::kAsShadow
-                                        ? append(shades, level, inSky, out.balls)
-                                        : append(shape.levels, level, inSky, out.balls);
-      out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f, coarseEnd,
-                            static_cast<float>(level.share), far});
+      const auto add = [&](const auto& levels, std::span<const double> radii) {
+        const LevelShare level = levelAt(radii, kLayerBallRad, widths, detail);
+        const std::size_t coarseEnd = append(levels, level, inSky, out.balls);
+        out.clouds.push_back({out.balls.size(), MetaballPhase::kDroplets, 1.0f, coarseEnd,
+                              static_cast<float>(level.share), far});
+      };
+      if (detail == MetaballDetail::kAsShadow) {
+        const ShadeLevels shades{shape};
+        add(shades, shades.radii());
+      } else {
+        add(shape.levels, shape.radii);
+      }
     }
   }
 }

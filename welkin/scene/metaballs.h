@@ -119,6 +119,9 @@ class MetaballSky {
   // evenly over the hemisphere (field::hemisphereDirection), from the ground at the place.
   std::vector<float> layerOpticalDepths(std::size_t layer, double secondsAfter, int directions) const;
 
+  // All that its layers' clouds are made of.
+  std::vector<const LibraryCloud*> shapes() const;
+
   // At an instant about an eye, over the curved earth. A pure, continuous function of the arguments; it
   // allocates nothing once `out` has held as many.
   void at(double secondsAfter, const glm::dvec3& eyeM, double earthRadiusM, CloudBalls& out,
