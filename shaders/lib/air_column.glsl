@@ -9,6 +9,7 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/light_around.glsl"
 #include "lib/cloud_light_fit.glsl"
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
@@ -43,7 +44,6 @@ struct AirRay {
   float cosSun;
   FirstPhases phases;
   vec2 dither;
-  AroundClouds around;
 };
 
 // What a column has come to.
@@ -86,7 +86,7 @@ AirRay airRay(ivec2 column) {
     }
   }
 #endif
-  return AirRay(dir, groundM, cosSun, phases, dither, aroundClouds(dir));
+  return AirRay(dir, groundM, cosSun, phases, dither);
 }
 
 // The share of the air's light in the sun that a segment has.
@@ -124,7 +124,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
   stretch = vec2(max(stretch.x, fromM), min(stretch.y, toM));     \
   state.steps = 0;                                                \
   if (stretch.x < stretch.y)                                      \
-    marchBand(band, stretch, ray.dir, uPixelRad, ray.phases, ray.cosSun, ray.around, ray.dither, state);
+    marchBand(band, stretch, ray.dir, uPixelRad, ray.phases, ray.cosSun, ray.dither, state);
 #ifdef WELKIN_SHEETS
 #define WELKIN_SEGMENT_DOWN(p, band) WELKIN_SEGMENT(uPieces[p], band, false)
 #define WELKIN_SEGMENT_UP(p, band) WELKIN_SEGMENT(uPieces[p], band, true)

@@ -9,7 +9,7 @@
 // height overhead: exact for sky planes; a plane rises off the curved earth and a dome comes down to the ground, but they keep
 // their place.
 // Clouds of metaballs (WELKIN_SPLATS) are one more surface, at their mean distance along the ray.
-// Needs lib/sky_uniforms.glsl before it, with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl, with splats lib/splat_layer.glsl.
+// Needs lib/sky_uniforms.glsl and lib/light_around.glsl before it, with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl, with splats lib/splat_layer.glsl.
 
 #if defined(WELKIN_SHEETS) || defined(WELKIN_SPLATS)
 #define WELKIN_SURFACES
@@ -72,7 +72,7 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
 }
 
 // Source function at q: scattered radiance per unit extinction, cd/m2.
-vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, FirstPhases phases, CloudView view, AroundClouds around, float dither) {
+vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, FirstPhases phases, CloudView view, vec3 dir, float dither) {
   // Towards the sun: first through the point's own density, then through samples at distances that grow
   // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says. It knows nothing of
   // forms smaller than its cells, and a surface that faces the sun would lie in its own shadow: there is a sample for every cell of the
@@ -99,6 +99,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   CloudScattering scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
   // Light from above comes into a deck through its top, and into a cloud among others through its sides.
   float enteredM = mix(q.z, q.z + (1.0 - place.y) * place.z, cover * cover * cover * cover);
+  LightWeights weights = lightWeights(depths, view.cosSun, view.height);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
   sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
@@ -107,10 +108,10 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
   float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
   return keyLightAt(q.z, p) * (sheets * sun) +
-         lightFromAbove(around, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
+         lightFromAbove(weights, dir, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * scattered.shares.y;
 #else
   return keyLightAt(q.z, p) * sun +
-         lightFromAbove(around, enteredM) * scattered.shares.x + lightFromBelow(around, q.z) * scattered.shares.y;
+         lightFromAbove(weights, dir, enteredM) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * scattered.shares.y;
 #endif
 }
 
@@ -142,7 +143,7 @@ void meetSplats(float distanceM, inout MarchState state) {
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
 // free path on: most of what is seen lies there, and the light changes fastest.
-void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases phases, float cosSun, AroundClouds around, vec2 dither,
+void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases phases, float cosSun, vec2 dither,
                inout MarchState state) {
   float t = stretch.x;
   t += WELKIN_WITHIN(max(uStepNearM, uStepShare * t)) * (0.02 + dither.x);
@@ -227,7 +228,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     float share = state.transmittance * (1.0 - through);
     state.luminance += share * cloudSource(band, p, q, point, detail, phases,
                                            CloudView(cosSun, dir.z, -log(state.transmittance), t,
-                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), around, dither.y);
+                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), dir, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
@@ -294,7 +295,6 @@ FirstPhases cloudPhases(vec3 dir, float cosSun) {
 
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
-  AroundClouds around = aroundClouds(dir);
   FirstPhases phases = cloudPhases(dir, cosSun);
 #ifdef WELKIN_SHEETS
   MarchState state = WELKIN_MARCH_BEGIN;
@@ -324,7 +324,7 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
 #define WELKIN_MARCH(p, band, up)                            \
   stretch = bandStretch(vec2(uPieces[p]), up, dir.z);        \
   stretch.y = min(stretch.y, endM);                          \
-  marchBand(band, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
+  marchBand(band, stretch, dir, pixelRad, phases, cosSun, dither, state);
 #define WELKIN_MARCH_DOWN(p, band) WELKIN_MARCH(p, band, false)
 #define WELKIN_MARCH_UP(p, band) WELKIN_MARCH(p, band, true)
 #ifdef WELKIN_SPLATS
@@ -349,11 +349,11 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
 #define WELKIN_MARCH_DOWN(i)                                \
   stretch = bandStretch(vec2(uBands[i]), false, dir.z);     \
   stretch.y = min(stretch.y, endM);                         \
-  marchBand(i, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
 #define WELKIN_MARCH_UP(i)                                  \
   stretch = bandStretch(vec2(uBands[i]), true, dir.z);      \
   stretch.y = min(stretch.y, endM);                         \
-  marchBand(i, stretch, dir, pixelRad, phases, cosSun, around, dither, state);
+  marchBand(i, stretch, dir, pixelRad, phases, cosSun, dither, state);
   WELKIN_EACH_BAND_DOWN(WELKIN_MARCH_DOWN)
   WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
 #ifdef WELKIN_SPLATS

@@ -78,34 +78,3 @@ vec2 sphereCrossings(float h, float dirZ) {
   float other = abs(q) > 1e-6 ? c / q : 0.0;
   return vec2(min(q, other), max(q, other));
 }
-
-// Light from above and from below the horizon that clouds scatter towards an eye that looks along a direction: they scatter forward, so
-// that what lies behind them counts more; and what lies overhead, as it finds its way in more easily than what comes slanting. Weights
-// linear in the direction, which match where paths of the reference renderer end, in most scenes of bench/truth, within a seventh.
-struct AroundClouds {
-  vec3 above, aboveLow, aboveHigh; // at the ground, at 2 km, at 10 km
-  vec3 below, belowHigh;           // at 2 km, at 10 km
-};
-const float kAroundForward = 1.5;
-const float kAroundUpright = 1.0;
-
-vec3 weighedLight(LightMoments light, vec3 weights, float side) {
-  vec4 w = vec4(1.0, weights);
-  return max(vec3(dot(light.red, w), dot(light.green, w), dot(light.blue, w)), 0.0) / max(1.0 + 0.5 * side * weights.z, 0.2);
-}
-
-AroundClouds aroundClouds(vec3 dir) {
-  vec3 up = kAroundForward * dir + vec3(0.0, 0.0, kAroundUpright), down = kAroundForward * dir - vec3(0.0, 0.0, kAroundUpright);
-  return AroundClouds(weighedLight(uAboveLight[0], up, 1.0), weighedLight(uAboveLight[1], up, 1.0),
-                      weighedLight(uAboveLight[2], up, 1.0),
-                      weighedLight(uBelowLight[0], down, -1.0), weighedLight(uBelowLight[1], down, -1.0));
-}
-
-// Most of the air is low.
-vec3 atHeight(vec3 ground, vec3 low, vec3 high, float heightM) {
-  if (heightM < 2000.0) return mix(ground, low, (1.0 - exp(-heightM / 1500.0)) / (1.0 - exp(-2000.0 / 1500.0)));
-  return mix(low, high, clamp((heightM - 2000.0) / 8000.0, 0.0, 1.0));
-}
-
-vec3 lightFromAbove(AroundClouds around, float heightM) { return atHeight(around.above, around.aboveLow, around.aboveHigh, heightM); }
-vec3 lightFromBelow(AroundClouds around, float heightM) { return atHeight(uGroundLight, around.below, around.belowHigh, heightM); }

@@ -7,6 +7,7 @@
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/light_around.glsl"
 #include "lib/cloud_light_fit.glsl"
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"

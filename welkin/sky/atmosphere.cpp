@@ -99,6 +99,27 @@ glm::vec3 Atmosphere::transmittanceToSpace(double altitudeM, double mu) const {
                                          static_cast<float>(altitudeM), static_cast<float>(mu));
 }
 
+glm::vec3 Atmosphere::sphericalAlbedo(double altitudeM) const {
+  // Of a layer that scatters alike to both sides and absorbs nothing: E. F. Vermote et al. 1997, "Second
+  // Simulation of the Satellite Signal in the Solar Spectrum, 6S: An Overview". Aerosol counts by similarity.
+  const AtmosphereUniforms& u = uniforms_;
+  const double rayleighM =
+      u.rayleighScaleHeightM * std::exp(-altitudeM / static_cast<double>(u.rayleighScaleHeightM));
+  const double aerosolM = u.aerosolScaleHeightM * std::exp((u.groundAltitudeM - altitudeM) /
+                                                           static_cast<double>(u.aerosolScaleHeightM));
+  glm::vec3 albedo(0.0f);
+  for (int c = 0; c < 3; ++c) {
+    const double depth = u.rayleighScattering[c] * rayleighM +
+                         (1.0 - static_cast<double>(u.aerosolG)) * u.aerosolScattering[c] * aerosolM;
+    if (depth < 1e-6) continue;
+    // Exponential integrals.
+    const double e1 = -std::expint(-depth), e2 = std::exp(-depth) - depth * e1,
+                 e3 = (std::exp(-depth) - depth * e2) / 2.0, e4 = (std::exp(-depth) - depth * e3) / 3.0;
+    albedo[c] = static_cast<float>((3.0 * depth - 4.0 * e3 + 6.0 * e4) / (4.0 + 3.0 * depth));
+  }
+  return albedo;
+}
+
 glm::vec3 Atmosphere::skyLuminance(double altitudeM, glm::vec3 direction,
                                    std::span<const Light> lights) const {
   shared::Atmosphere a = shared::fromUniforms(uniforms_);

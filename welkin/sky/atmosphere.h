@@ -96,6 +96,8 @@ class Atmosphere {
   // Transmittance from a point to space in the direction with zenith cosine mu; 0 where the earth is in the
   // way (half a light's disc at the horizon itself).
   glm::vec3 transmittanceToSpace(double altitudeM, double mu) const;
+  // Of light from all directions below, the share that the air above a point sends back down.
+  glm::vec3 sphericalAlbedo(double altitudeM) const;
   // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs). Towards the
   // ground: of the air in front of it alone.
   glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, std::span<const Light> lights) const;

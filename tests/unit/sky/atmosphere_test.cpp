@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "welkin/core/parallel.h"
@@ -207,6 +208,22 @@ TEST(Energy, NothingIsLostInAConservativeAtmosphere) {
 }
 
 // From the densest fog on there is light in every direction, and a number everywhere.
+// What a white ground adds to the light of the sky on itself, by the tables, is a series of what the air
+// sends back.
+TEST(Energy, TheAirSendsBackWhatAWhiteGroundAdds) {
+  constexpr float kAlbedo = 0.5f;
+  const Atmosphere black(AtmosphereParams{}, 300e3, 0.0, glm::vec3(0.0f));
+  const Atmosphere white(AtmosphereParams{}, 300e3, 0.0, glm::vec3(kAlbedo));
+  const std::array lights{Light{{0.6f, 0.0f, 0.8f}, glm::vec3(1e5f)}};
+  const glm::vec3 before = black.skyIlluminance(0.0, lights), after = white.skyIlluminance(0.0, lights),
+                  direct = lights[0].illuminance * black.transmittanceToSpace(0.0, 0.8) * 0.8f;
+  const glm::vec3 told = black.sphericalAlbedo(0.0), found = (after - before) / (kAlbedo * (after + direct));
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(told[c] / found[c], c < 2 ? 1.0f : 1.15f, 0.15f) << c << " " << found[c];
+  EXPECT_GT(told.z, 2.0f * told.x);
+  EXPECT_LT(black.sphericalAlbedo(8000.0).z, 0.5f * told.z);
+}
+
 TEST(Haze, FogIsNeitherBlackNorInfinite) {
   const std::vector<Light> sun = {{glm::normalize(glm::vec3(1.0f, 0.0f, 0.3f)), glm::vec3(100e3f)}};
   for (const double visibility : {10.0, 50.0, 200.0, 1000.0}) {
