@@ -44,7 +44,7 @@ SplatTable measureSplats() {
   render::SkyTextures tables;
   tables.update(state);
   render::SplatPass pass;
-  pass.setSky(shading::skyUniforms(state), state.lights[0].direction);
+  pass.setSky(shading::skyUniforms(state), shading::splatLights(state));
   const gpu::Texture2D texture(kWidth, kHeight, {.format = gpu::Format::kRgba16F});
   const gpu::Framebuffer target(texture);
 

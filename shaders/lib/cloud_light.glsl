@@ -79,6 +79,17 @@ WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float v
 #endif
 }
 
+WELKIN_CONST float kTiltAcross = 0.3f;                 // what a lump has of a slab's difference between its sides
+WELKIN_CONST float kTiltForward = 1.1f;                // and of the flux through it as a source
+
+// What light adds that is not the same from opposite sides: mean radiance at a point, for each unit of half the difference between what a
+// plane facing the one side and one facing the other would get. towards, away: optical depths to them; cosView: of the angle between the
+// direction of view and the side that the depth `towards` is on.
+WELKIN_FN float cloudTilt(float towards, float away, float cosView) {
+  float ahead = kSimilarity * towards, behind = kSimilarity * away;
+  return (kTiltAcross * (behind - ahead) + kTiltForward * cosView) / (4.0f / 3.0f + ahead + behind);
+}
+
 // Shares in [0, 1] of uniform radiance from above (x) and from below (y) that arrive at a point as mean radiance.
 WELKIN_FN vec2 cloudSkyShares(CloudDepths d) {
   float up = kSimilarity * d.up, down = kSimilarity * d.down;

@@ -31,12 +31,23 @@ LightMoments mixMoments(LightMoments a, LightMoments b, float share) {
 float airBelow2Km(float heightM) { return (1.0 - exp(-heightM / 1500.0)) / (1.0 - exp(-2000.0 / 1500.0)); }
 float heightTo10Km(float heightM) { return clamp((heightM - 2000.0) / 8000.0, 0.0, 1.0); }
 
-vec3 lightFromAbove(LightWeights weights, vec3 dir, float heightM) {
-  LightMoments light = heightM < 2000.0 ? mixMoments(uAboveLight[0], uAboveLight[1], airBelow2Km(heightM))
-                                        : mixMoments(uAboveLight[1], uAboveLight[2], heightTo10Km(heightM));
-  return weighedLight(light, weights, dir, 1.0);
+LightMoments momentsAbove(float heightM) {
+  if (heightM < 2000.0) return mixMoments(uAboveLight[0], uAboveLight[1], airBelow2Km(heightM));
+  return mixMoments(uAboveLight[1], uAboveLight[2], heightTo10Km(heightM));
 }
+LightMoments momentsBelow(float heightM) { return mixMoments(uBelowLight[0], uBelowLight[1], heightTo10Km(heightM)); }
+float airShareBelow(float heightM) { return heightM < 2000.0 ? airBelow2Km(heightM) : 1.0; }  // the rest is the ground
+
+vec3 lightFromAbove(LightWeights weights, vec3 dir, float heightM) { return weighedLight(momentsAbove(heightM), weights, dir, 1.0); }
 vec3 lightFromBelow(LightWeights weights, vec3 dir, float heightM) {
-  if (heightM < 2000.0) return mix(uGroundLight, weighedLight(uBelowLight[0], weights, dir, -1.0), airBelow2Km(heightM));
-  return weighedLight(mixMoments(uBelowLight[0], uBelowLight[1], heightTo10Km(heightM)), weights, dir, -1.0);
+  return mix(uGroundLight, weighedLight(momentsBelow(heightM), weights, dir, -1.0), airShareBelow(heightM));
 }
+
+// Half of the difference between what comes from one side, level, and what comes from the opposite side: as mean luminances of planes that
+// face them.
+vec3 sideOf(LightMoments light, vec3 side) {
+  vec4 w = vec4(0.0, side);
+  return vec3(dot(light.red, w), dot(light.green, w), dot(light.blue, w));
+}
+vec3 sideFromAbove(vec3 side, float heightM) { return sideOf(momentsAbove(heightM), side); }
+vec3 sideFromBelow(vec3 side, float heightM) { return airShareBelow(heightM) * sideOf(momentsBelow(heightM), side); }

@@ -12,8 +12,6 @@ uniform float uKeyLightReach;     // sines are those at the eye +- this
 uniform Atmosphere uAtmosphere;
 uniform float uGroundAltitudeM;   // of the ground above mean sea level
 uniform sampler2D uTransmittance;
-uniform vec3 uSkyLow;             // mean luminance of the upper hemisphere of the clear sky at the ground
-uniform vec3 uSkyHigh;            // the same at 10 km
 uniform vec3 uGroundLight;        // luminance of the ground as clouds see it
 // Moments of light from many directions over 2 pi. x: of the luminance, yzw: of it times the direction.
 struct LightMoments {
@@ -31,10 +29,16 @@ uniform vec3 uCloudGlow;          // by how much clouds make it brighter than it
 
 // The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
 // day over some clouds and dusk over others.
-vec3 keyLightAt(float heightM, vec3 p) {
-  float sine = uKeyDirection.z + dot(vec2(p), vec2(uKeyDirection)) / uEarthRadiusM;
-  return vec3(textureLod(uKeyLight, vec2(heightM / uKeyLightTopM, 0.5 + 0.5 * (sine - uKeyDirection.z) / uKeyLightReach), 0.0));
+vec3 lightAt(sampler2D table, vec3 direction, float heightM, vec3 p) {
+  float more = dot(vec2(p), vec2(direction)) / uEarthRadiusM;  // of the sine
+  return vec3(textureLod(table, vec2(heightM / uKeyLightTopM, 0.5 + 0.5 * more / uKeyLightReach), 0.0));
 }
+vec3 keyLightAt(float heightM, vec3 p) { return lightAt(uKeyLight, uKeyDirection, heightM, p); }
+
+#ifdef WELKIN_SECOND_LIGHT
+uniform vec3 uSecondDirection;    // towards the other one of sun and moon, where it is seen on clouds
+uniform sampler2D uSecondLight;   // as uKeyLight
+#endif
 
 // What the air between the eye and a distance adds in the sun, and what it lets through.
 void aerialLit(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
@@ -63,9 +67,6 @@ vec3 cloudsThroughAir(vec3 luminance, float hidden, vec3 through) {
   float red = max(through.x, 1e-4);  // haze takes as much of all colours, molecules little of red
   return luminance * through + (pow(red, -kHazeForward) - 1.0) * through * (luminance - hidden * uHazeLuminance);
 }
-
-// Mean radiance of what is not the key light, from above (sky) and below (ground) at a height.
-vec3 skyAbove(float heightM) { return mix(uSkyLow, uSkyHigh, clamp(heightM / 10000.0, 0.0, 1.0)); }
 
 // Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.
 vec2 sphereCrossings(float h, float dirZ) {

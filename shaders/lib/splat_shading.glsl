@@ -1,19 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light of a place in a cloud of metaballs as it arrives at the eye, with what the air in front adds.
-// Needs lib/sky_uniforms.glsl and lib/cloud_light.glsl before it.
+// Needs lib/sky_uniforms.glsl, lib/cloud_light.glsl and lib/light_around.glsl before it.
 
 // Of light through another cloud, as much as slabs let through that absorb nothing (Eddington's solution, scaled by similarity).
 float splatThrough(float depth) { return 4.0 / (4.0 + 3.0 * kSimilarity * depth); }
 
-// dir: from the eye. depths: in the cloud itself. shade: optical depth of other clouds before the sun. phase: of the first scattering, 1/sr; cosSun: of the angle between dir and the light.
-vec3 splatLight(CloudDepths depths, float shade, vec3 dir, float distanceM, float phase, float cosSun, float albedo) {
+// What is seen, from the eye.
+struct SplatPlace {
+  vec3 dir;
+  float distanceM;
+  vec3 fromGround;                // under the eye
+  float heightM;
+};
+SplatPlace splatPlace(vec3 dir, float distanceM) {
   vec3 p = dir * distanceM;
-  vec3 fromGround = vec3(p.xy, p.z + uEyeM);
-  float heightM = max(fromGround.z + 0.5 * dot(p.xy, p.xy) / uEarthRadiusM, 0.0);
+  return SplatPlace(dir, distanceM, vec3(p.xy, p.z + uEyeM), max(p.z + uEyeM + 0.5 * dot(p.xy, p.xy) / uEarthRadiusM, 0.0));
+}
+
+// What a lump has of the light that a slab as thick along the same line scatters more than once: it goes out by the other sides, too. Fitted, as
+// kTiltAcross and kTiltForward are, to balls and lumps of balls traced path by path.
+const float kLump = 0.75;
+
+// Of one light. lux: as it arrives through the air. depths: in the cloud itself. shade: optical depth of other clouds before the light. phase: of
+// the first scattering, 1/sr.
+vec3 splatFromLight(vec3 lux, vec3 toLight, CloudDepths depths, float shade, float phase, SplatPlace place) {
+  float once = cloudSunSourceSingle(depths, phase);
+  float all = cloudSunSource(depths, phase, dot(place.dir, toLight), place.dir.z, toLight.z);
+  return lux * splatThrough(shade) * (once + kLump * (all - once));
+}
+
+// By height alone: the sides count by cloudTilt().
+const LightWeights kSplatWeights = LightWeights(1.5, 1.0);
+
+// Of the sky and what is beneath. glow: optical depths towards the side that the sky is bright on, and away from it.
+vec3 splatFromSky(CloudDepths depths, vec2 glow, vec3 toGlow, SplatPlace place) {
+  vec3 upright = vec3(0.0, 0.0, place.dir.z);
   vec2 shares = cloudSkyShares(depths);
-  vec3 light = keyLightAt(heightM, fromGround) * splatThrough(shade) * cloudSunSource(depths, phase, cosSun, dir.z, uKeyDirection.z) +
-               skyAbove(heightM) * shares.x + uGroundLight * shares.y;
+  float tilt = 2.0 * cloudTilt(glow.x, glow.y, dot(place.dir, toGlow));  // half-way down, each side has half of it
+  return max(lightFromAbove(kSplatWeights, upright, place.heightM) + tilt * sideFromAbove(toGlow, place.heightM), 0.0) * shares.x +
+         max(lightFromBelow(kSplatWeights, upright, place.heightM) + tilt * sideFromBelow(toGlow, place.heightM), 0.0) * shares.y;
+}
+
+vec3 splatThroughAir(vec3 light, SplatPlace place) {
   vec3 inscatter, through;
-  aerial(dir, distanceM, inscatter, through);
-  return albedo * light * through + inscatter;
+  aerial(place.dir, place.distanceM, inscatter, through);
+  return light * through + inscatter;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stack of slices across a direction of light, of one cloud: the optical depth from the light to the end of each slice. The slices lie
-// side by side in a block of one texture, four of them to a texel, a margin of texels around each four. A cloud has three blocks beside one another: from the key
-// light, from the zenith, and from the eye. The eye's is in perspective: across, lengths are as seen at the cloud's centre.
+// side by side in a block of one texture, four of them to a texel, a margin of texels around each four. A cloud has three or four blocks beside one another: from the
+// key light, from the zenith, from the eye, and from the second light where it is seen; a coarse one stands by itself, from the side that
+// the sky is bright on. The eye's is in perspective: across, lengths are as seen at the cloud's centre.
 
 struct SplatStack {
   vec3 centreM;                   // from the eye

@@ -5,6 +5,7 @@
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/light_around.glsl"
 #include "lib/splat.glsl"
 #include "lib/splat_ray.glsl"
 #include "lib/splat_stack.glsl"
@@ -14,11 +15,15 @@ flat in vec4 vBall;
 flat in vec4 vMatter;
 flat in vec4 vCloud;
 flat in vec4 vHalves;
+flat in vec4 vOthers;
+flat in vec2 vGlow;
 flat in vec4 vBlock;
 in vec2 vCorner;
 
 uniform mat3 uSunStack;                   // across, upward, away
 uniform mat3 uSkyStack;
+uniform mat3 uGlowStack;                  // towards the bright side of the sky
+uniform mat3 uSecondStack;
 uniform sampler2D uDepths;
 uniform DropletPhase uDroplets;
 
@@ -26,8 +31,22 @@ layout(location = 0) out vec4 outLight;
 
 const float kRim = 0.95;                  // rays beyond that many radii see what those see
 const int kHalvings = 6;
+const float kGlowTexels = 16.0;           // on a slice's side of that stack
 const float kEyeStackPart = 0.4;          // of the number of the phase function: how much the stack from the eye counts
 const float kFront = 0.7;                 // optical depth of the surface of a cloud
+
+float phaseOf(float cosine) {
+  return vMatter.y < 0.5 ? phaseDroplet(cosine, uDroplets) : (vMatter.y < 1.5 ? phaseRayleigh(cosine) : phaseIsotropic());
+}
+
+// Of a light with its stack; sky: the depths above and below.
+vec3 fromLight(SplatStack stack, vec3 lux, vec3 toLight, vec2 sky, SplatPlace place) {
+  vec3 p = place.dir * place.distanceM;
+  vec2 along = splatBodyDepths(stack, uDepths, p);
+  float shade = splatAhead(stack, uDepths, p);
+  CloudDepths depths = CloudDepths(max(along.x - shade, 0.0), along.y, sky.x, sky.y);
+  return splatFromLight(lux, toLight, depths, shade, phaseOf(dot(place.dir, toLight)), place);
+}
 
 void main() {
   SplatFrame f = splatFrame(vBall);
@@ -55,15 +74,17 @@ void main() {
     SplatStack eyeStack = SplatStack(vec3(vCloud), across, cross(across, away), away, vCloud.w, vBlock.w, block + 2.0 * beside);
     distanceM = mix(distanceM, min(distanceM, splatReach(eyeStack, uDepths, dir, kFront)), fract(vMatter.y) / kEyeStackPart);
   }
+  SplatPlace place = splatPlace(dir, distanceM);
   vec3 p = dir * distanceM;
-
-  SplatStack sunStack = SplatStack(vec3(vCloud), uSunStack[0], uSunStack[1], uSunStack[2], vHalves.x, vHalves.y, block);
+  SplatStack keyStack = SplatStack(vec3(vCloud), uSunStack[0], uSunStack[1], uSunStack[2], vHalves.x, vHalves.y, block);
   SplatStack skyStack = SplatStack(vec3(vCloud), uSkyStack[0], uSkyStack[1], uSkyStack[2], vHalves.z, vHalves.w, block + beside);
-  vec2 sun = splatBodyDepths(sunStack, uDepths, p);
-  float shade = splatAhead(sunStack, uDepths, p);
-  vec2 sky = splatDepths(skyStack, uDepths, p);
-  CloudDepths depths = CloudDepths(max(sun.x - shade, 0.0), sun.y, sky.x, sky.y);
-  float cosSun = dot(dir, uKeyDirection);
-  float phase = vMatter.y < 0.5 ? phaseDroplet(cosSun, uDroplets) : (vMatter.y < 1.5 ? phaseRayleigh(cosSun) : phaseIsotropic());
-  outLight = vec4(splatLight(depths, shade, dir, distanceM, phase, cosSun, vMatter.z), 0.0);
+  SplatStack glowStack = SplatStack(vec3(vCloud), uGlowStack[0], uGlowStack[1], uGlowStack[2], vOthers.x, vOthers.y, vec3(vGlow, kGlowTexels));
+  vec2 sky = splatDepths(skyStack, uDepths, p), glow = splatDepths(glowStack, uDepths, p);
+  vec3 light = fromLight(keyStack, keyLightAt(place.heightM, place.fromGround), uKeyDirection, sky, place) +
+               splatFromSky(CloudDepths(0.0, 0.0, sky.x, sky.y), glow, -uGlowStack[2], place);
+#ifdef WELKIN_SECOND_LIGHT
+  SplatStack second = SplatStack(vec3(vCloud), uSecondStack[0], uSecondStack[1], uSecondStack[2], vOthers.z, vOthers.w, block + 3.0 * beside);
+  light += fromLight(second, lightAt(uSecondLight, uSecondDirection, place.heightM, place.fromGround), uSecondDirection, sky, place);
+#endif
+  outLight = vec4(splatThroughAir(vMatter.z * light, place), 0.0);
 }

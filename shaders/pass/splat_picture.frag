@@ -6,6 +6,7 @@
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"
+#include "lib/light_around.glsl"
 #include "lib/splat.glsl"
 #include "lib/splat_ray.glsl"
 #include "lib/splat_stack.glsl"
@@ -19,6 +20,8 @@ flat in vec4 vTexel;
 in vec2 vAcross;
 
 uniform mat3 uSunStack;                   // across, upward, away
+uniform mat3 uGlowStack;                  // away from the bright side of the sky
+uniform mat3 uSecondStack;
 uniform sampler2D uDepths;
 uniform sampler3D uShapes;                // beside one another: density, columns of it above and below, distance to the nearest ball
 uniform vec2 uShapePoints;                // on the side of each grid; shapes
@@ -31,6 +34,7 @@ const float kStepDepth = 0.6, kFinestStep = 0.03, kCoarsestStep = 0.08;
 const float kOpaque = 7.0;                // optical depth
 const int kSunSteps = 5;
 const int kBodySteps = 3;
+const int kGlowSteps = 4;
 
 vec4 shapeAt(vec3 q) {
   vec3 at = clamp(0.5 * q / vec3(vShape) + 0.5, 0.0, 1.0);
@@ -59,10 +63,22 @@ float columnFrom(vec3 q, vec3 dir, int steps) {
 
 vec3 turned(vec3 v) { return vec3(vMatter.x * v.x - vMatter.y * v.y, vMatter.y * v.x + vMatter.x * v.y, v.z); }
 
+// Of a light at a place in the shape's frame and in the world, with the stack of what shades the cloud; sky: the depths above and below.
+vec3 fromLight(mat3 axes, float stackNumber, vec3 lux, vec3 toLight, vec3 q, vec2 sky, SplatPlace place) {
+  vec3 along = turned(toLight), inward = (1.0 - kSplatInward) * q;
+  float towards = columnFrom(q, along, kSunSteps), away = columnFrom(q, -along, kSunSteps);
+  float body = columnFrom(inward, along, kBodySteps) + columnFrom(inward, -along, kBodySteps);
+  away = max(away, 0.5 * (away + body - towards));
+  SplatStack stack = SplatStack(vec3(vPlace), axes[0], axes[1], axes[2], vShade.x, vShade.y, vec3(vShade.z + stackNumber * vTexel.y, vShade.w, vTexel.y));
+  float shade = splatDepths(stack, uDepths, place.dir * place.distanceM).x;
+  CloudDepths depths = CloudDepths(vMatter.z * towards, vMatter.z * away, sky.x, sky.y);
+  return splatFromLight(lux, toLight, depths, shade, phaseDroplet(dot(place.dir, toLight), uDroplets), place);
+}
+
 void main() {
   SplatFrame f = splatFrame(vPlace);
   vec3 dir = normalize(f.forward * f.centreM + f.right * vAcross.x + f.up * vAcross.y);
-  vec3 eye = turned(-vPlace.xyz / vPlace.w), ray = turned(dir), sun = turned(uKeyDirection);
+  vec3 eye = turned(-vPlace.xyz / vPlace.w), ray = turned(dir);
   vec2 ends = boxCrossings(eye, ray);
   ends.x = max(ends.x, 0.0);
   outLight = vec4(0.0);
@@ -90,15 +106,13 @@ void main() {
   float at = seenAt / (1.0 - through);
   vec3 q = eye + ray * at;
   vec4 here = shapeAt(q);
-  vec3 inward = (1.0 - kSplatInward) * q;
-  float toSun = columnFrom(q, sun, kSunSteps), fromSun = columnFrom(q, -sun, kSunSteps);
-  float body = columnFrom(inward, sun, kBodySteps) + columnFrom(inward, -sun, kBodySteps);
-  fromSun = max(fromSun, 0.5 * (fromSun + body - toSun));
-  float distanceM = at * vPlace.w;
-  SplatStack stack = SplatStack(vec3(vPlace), uSunStack[0], uSunStack[1], uSunStack[2], vShade.x, vShade.y, vec3(vShade.zw, vTexel.y));
-  float shade = splatDepths(stack, uDepths, dir * distanceM).x;
-  CloudDepths depths = CloudDepths(vMatter.z * toSun, vMatter.z * fromSun, vMatter.z * here.y, vMatter.z * here.z);
-  float cosSun = dot(dir, uKeyDirection);
-  vec3 light = splatLight(depths, shade, dir, distanceM, phaseDroplet(cosSun, uDroplets), cosSun, 1.0);
-  outLight = vec4(light, 1.0) * (1.0 - exp(-vMatter.w * all));
+  SplatPlace place = splatPlace(dir, at * vPlace.w);
+  vec3 toGlow = -uGlowStack[2], side = turned(toGlow);
+  vec2 sky = vMatter.z * here.yz, glow = vMatter.z * vec2(columnFrom(q, side, kGlowSteps), columnFrom(q, -side, kGlowSteps));
+  vec3 light = fromLight(uSunStack, 0.0, keyLightAt(place.heightM, place.fromGround), uKeyDirection, q, sky, place) +
+               splatFromSky(CloudDepths(0.0, 0.0, sky.x, sky.y), glow, toGlow, place);
+#ifdef WELKIN_SECOND_LIGHT
+  light += fromLight(uSecondStack, 1.0, lightAt(uSecondLight, uSecondDirection, place.heightM, place.fromGround), uSecondDirection, q, sky, place);
+#endif
+  outLight = vec4(splatThroughAir(light, place), 1.0) * (1.0 - exp(-vMatter.w * all));
 }

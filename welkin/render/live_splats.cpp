@@ -35,7 +35,7 @@ void LiveSplats::change(const scene::SkyState& state) {
 }
 
 void LiveSplats::update(const scene::SkyState& state, const shading::Uniforms& skyUniforms) {
-  pass_.setSky(skyUniforms, state.lights[0].direction);
+  pass_.setSky(skyUniforms, shading::splatLights(state));
   eyeM_.reset();
 }
 

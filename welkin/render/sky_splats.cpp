@@ -89,7 +89,7 @@ void SkySplats::update(const scene::SkyState& state) {
 
 void SkySplats::draw(const scene::SkyState& state, const SkyTextures& tables, gpu::Program& program) {
   if (!pass_) pass_.emplace(SplatDetail::kStill);
-  pass_->setSky(shading::skyUniforms(state), state.lights[0].direction);
+  pass_->setSky(shading::skyUniforms(state), shading::splatLights(state));
   const double eyeM = state.scene.camera.eyeM;
   pass_->drawShadow(shadowClouds_, {0.0, 0.0, eyeM});
 

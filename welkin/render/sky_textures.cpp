@@ -6,6 +6,7 @@
 
 #include "welkin/optics/mie_droplets.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/sky/atmosphere.h"
 
@@ -51,11 +52,18 @@ void SkyTextures::updateDroplets(const scene::SkyState& state) {
   mieDiameterUm_ = diameterUm;
 }
 
+void SkyTextures::updateLights(const scene::SkyState& state) {
+  shading::lightTable(state, state.lights[0], lightTable_);
+  put(keyLight_, lightTable_, kFull);
+  if (!shading::secondLightSeen(state)) return;
+  shading::lightTable(state, state.lights[1], lightTable_);
+  put(secondLight_, lightTable_, kFull);
+}
+
 void SkyTextures::update(const scene::SkyState& state) {
   updateDroplets(state);
   upload(state, sky::makeSkyTables(*state.atmosphere, eyeAltitude(state), state.lights));
-  shading::keyLightTable(state, keyLightTable_);
-  put(keyLight_, keyLightTable_, kFull);
+  updateLights(state);
   shown_.reset();
 }
 
@@ -113,8 +121,7 @@ void SkyTextures::updateLive(scene::SkyState& state) {
     atmosphere_ = state.atmosphere;
     eyeAltitudeM_ = eyeAltitude(state);
   }
-  shading::keyLightTable(state, keyLightTable_);
-  put(keyLight_, keyLightTable_, kFull);
+  updateLights(state);
   const double before = std::floor(state.secondsAfter / kKeyS) * kKeyS;
   const KeyName first{before, state.litBySun}, second{before + kKeyS, state.litBySun};
   // Whole steps of the weight, so that pictures between them upload nothing.
@@ -137,6 +144,7 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uTransmittance", transmittance_);
   program.bind("uSkyView", skyView_);
   program.bind("uKeyLight", keyLight_);
+  if (secondLight_.id() != 0) program.bind("uSecondLight", secondLight_);
   if (mieDiameterUm_) program.bind("uMieDroplets", mieDroplets_);
   program.bind("uAerialInscatter", inscatter_);
   program.bind("uAerialTransmittance", through_);

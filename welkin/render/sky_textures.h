@@ -51,6 +51,7 @@ class SkyTextures {
   void start(const scene::SkyState& state, KeyName name, double startedAt);
   void prepareNext(scene::SkyState& state, double before);
   void updateDroplets(const scene::SkyState& state);
+  void updateLights(const scene::SkyState& state);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
 
   std::shared_ptr<const sky::Atmosphere> atmosphere_;  // that the keys are of
@@ -59,9 +60,9 @@ class SkyTextures {
   Ahead ahead_;
   double lastS_ = 0.0;  // the instant of the last update
   sky::SkyTables blended_;
-  Image<float> keyLightTable_;
+  Image<float> lightTable_;
   std::optional<std::pair<KeyName, int>> shown_;  // first key instant and weight that are uploaded
-  gpu::Texture2D transmittance_, skyView_, keyLight_;
+  gpu::Texture2D transmittance_, skyView_, keyLight_, secondLight_;
   gpu::Texture3D inscatter_, through_;
   std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of
   gpu::Texture2D mieDroplets_;

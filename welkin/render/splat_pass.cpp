@@ -38,7 +38,10 @@ constexpr PictureFineness kLivePictures{2.0, 4e5}, kStillPictures{1.0, 4e6};
 // A picture has a stack of few slices for what shades it, and its own shade by its shape.
 constexpr StackSize kShadeSize{8};
 
-constexpr int kStacks = 3;  // to the light, to the zenith, from the eye
+// What a cloud has stacks of, beside one another, the last one where there is a second light; and by itself,
+// as it is so much coarser, that from the side that the sky is bright on.
+enum : int { kFromKey, kFromZenith, kFromEye, kFromSecond, kMostStacks, kFromGlow = kMostStacks };
+constexpr StackSize kGlowSize{16};
 // Nearer than the one, in radii of a cloud, there is none from the eye; from the other on it counts in full.
 constexpr double kEyeStackFrom = 1.15, kEyeStackAll = 1.6, kEyeStackPart = 0.4;  // as pass/splat_light.frag
 
@@ -55,19 +58,14 @@ struct Rays {
 constexpr Rays kLiveRays{1.0, 2, 4, 2e6}, kStillRays{2.0, 3, 16, 2e6};
 constexpr std::size_t kMostTilePx = 16;
 constexpr int kTilesWidthPx = 1024;
-constexpr int kShadowPx = 1024;
 
-// Floats of a ball in all slices of its three stacks and of those that it shades; few balls need more.
-constexpr std::size_t kValuesInBall = 160;
+// Floats of a ball in all slices of its five stacks and of those that it shades; few balls need more.
+constexpr std::size_t kValuesInBall = 230;
 // Of what shades a picture.
 constexpr std::size_t kValuesInPicture = 600;
 
 // A sort that has moved so many places for each ball had better begin anew.
 constexpr std::size_t kMostMoves = 24;
-
-bool drawn(const field::Metaball& b) {
-  return b.density != 0.0 && b.radiusM > 0.0;
-}
 
 // What `add` finds of a cloud's balls: of the two levels that fade into one another, each by itself, as `mix`
 // puts them together; nothing where there are no balls.
@@ -78,14 +76,6 @@ std::optional<T> mixed(const SplatCloud& cloud, Add&& add, Mix&& mix) {
     if (drawn(cloud.balls[i])) add(cloud.balls[i], found[i < cloud.coarse ? 0 : 1]);
   if (!found[0] || !found[1]) return found[0] ? found[0] : found[1];
   return mix(*found[1], *found[0], static_cast<double>(cloud.coarseShare));
-}
-
-// Across, upward and away from the light.
-glm::dmat3 axesOf(const glm::dvec3& toLight) {
-  const glm::dvec3 away = -glm::normalize(toLight);
-  const glm::dvec3 other = std::abs(away.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
-  const glm::dvec3 across = glm::normalize(glm::cross(away, other));
-  return {across, glm::cross(across, away), away};
 }
 
 // Grows, never shrinks, so that it settles; to powers of two, so that whatever was drawn before coordinates
@@ -108,14 +98,19 @@ struct SplatPass::Block {
   double finePx = kLeastPx;  // used of a slice's side
   StackSize size;
   int x = 0, y = 0;
-  std::array<float, 2 * kStacks> halves{};  // half side and half depth of each stack
+  int pitchPx = 0;                                    // from a stack to the next
+  std::array<float, 2 * (kMostStacks + 1)> halves{};  // half side and half depth of each stack
 };
 
 SplatPass::SplatPass(SplatDetail detail)
     : detail_(detail),
       depth_(graphicsProgram("pass/splat_depth.vert", "pass/splat_depth.frag")),
-      light_(graphicsProgram("pass/splat_light.vert", "pass/splat_light.frag")),
       pictures_(detail == SplatDetail::kStill ? kStillPictures : kLivePictures) {
+  for (std::size_t i = 0; i < lightPrograms_.size(); ++i) {
+    shading::ShaderDefines defines;
+    if (i == 1) defines.emplace_back("WELKIN_SECOND_LIGHT", "1");
+    lightPrograms_[i] = graphicsProgram("pass/splat_light.vert", "pass/splat_light.frag", defines);
+  }
   for (std::size_t i = 0; i < eye_.size(); ++i) {
     shading::ShaderDefines defines;
     if (i & 1) defines.emplace_back("WELKIN_DISTANCE", "1");
@@ -129,6 +124,7 @@ SplatPass::~SplatPass() = default;
 void SplatPass::reserve(std::size_t clouds, std::size_t balls,
                         std::span<const scene::LibraryCloud* const> shapes) {
   blocks_.reserve(clouds);
+  glows_.reserve(clouds);
   shades_.reserve(clouds);
   pictures_.reserve(clouds, shapes);
   wholes_.reserve(clouds);
@@ -140,10 +136,10 @@ void SplatPass::reserve(std::size_t clouds, std::size_t balls,
   values_.reserve(kValuesInBall * balls + kValuesInPicture * clouds);
 }
 
-void SplatPass::setSky(const shading::Uniforms& sky, const glm::vec3& toLight) {
-  setUniforms(light_, sky);
-  pictures_.setSky(sky);
-  toLight_ = toLight;
+void SplatPass::setSky(const shading::Uniforms& sky, const shading::SplatLights& lights) {
+  lights_ = lights;
+  setUniforms(lightProgram(), sky);
+  pictures_.setSky(sky, lights);
 }
 
 // The clouds in view, and a block of the stacks' texture for each.
@@ -168,6 +164,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
         shade.cloud = static_cast<std::uint32_t>(i);
         shade.centreM = bounds.centreM;
         shade.size = kShadeSize;
+        shade.pitchPx = kShadeSize.sidePx;
         shade.halves[0] = static_cast<float>(bounds.radiusM);
         shade.halves[1] = 2.0f * shade.halves[0];
         pictures_.all().back().shadeHalves = {shade.halves[0], shade.halves[1]};
@@ -207,28 +204,43 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
   std::sort(bySize_.begin(), bySize_.end(), [this](std::uint32_t a, std::uint32_t b) {
     return blocks_[a].share != blocks_[b].share ? blocks_[a].share > blocks_[b].share : a < b;
   });
-  const int stacksWidth = kStacks * StackSize{static_cast<int>(fineness.mostPx)}.width();
+  const int stacks = lights_.toSecond ? kMostStacks : kFromSecond;
+  const int stacksWidth = kMostStacks * StackSize{static_cast<int>(fineness.mostPx)}.width();
   int row = 0, x = 0;
   StackSize last;
   for (const std::uint32_t i : bySize_) {
     Block& b = blocks_[i];
     b.finePx = std::clamp(coarser * finePx(static_cast<double>(b.share)), kLeastPx, fineness.mostPx);
     b.size.sidePx = kStepPx * static_cast<int>(std::ceil(b.finePx / kStepPx));
-    if (b.size.sidePx != last.sidePx || x + kStacks * b.size.width() > stacksWidth) {
+    if (b.size.sidePx != last.sidePx || x + stacks * b.size.width() > stacksWidth) {
       if (x > 0) row += last.height();
       x = 0;
     }
     last = b.size;
     b.x = x, b.y = row;
-    x += kStacks * b.size.width();
+    b.pitchPx = b.size.width();
+    x += stacks * b.pitchPx;
   }
   if (x > 0) row += last.height();
   x = 0;
+  glows_.clear();
+  for (const Block& b : blocks_) {
+    Block& glow = glows_.emplace_back(b);
+    glow.size = kGlowSize;
+    glow.finePx = kGlowSize.sidePx;
+    glow.pitchPx = 0;
+    glow.x = x, glow.y = row;
+    x += kGlowSize.width();
+    if (x + kGlowSize.width() <= stacksWidth && glows_.size() < blocks_.size()) continue;
+    row += kGlowSize.height();
+    x = 0;
+  }
+  const int shadeWidth = (lights_.toSecond ? 2 : 1) * kShadeSize.sidePx;
   for (std::size_t i = 0; i < shades_.size(); ++i) {
     shades_[i].x = x, shades_[i].y = row;
     pictures_.all()[i].shade = {x, row};
-    x += kShadeSize.sidePx;
-    if (x + kShadeSize.sidePx <= stacksWidth && i + 1 < shades_.size()) continue;
+    x += shadeWidth;
+    if (x + shadeWidth <= stacksWidth && i + 1 < shades_.size()) continue;
     row += kShadeSize.sidePx;
     x = 0;
   }
@@ -241,7 +253,7 @@ void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const 
                          Block& block) {
   const StackSize& own = block.size;
   const double centreM = glm::length(block.centreM);
-  const bool perspective = beside == 2;
+  const bool perspective = beside == kFromEye;
   // Of a ball: across, upward, away; and the scale of the picture there.
   const auto along = [&](const field::Metaball& b) {
     const glm::dvec3 at = (b.centreM - eyeM - block.centreM) * axes;
@@ -261,8 +273,9 @@ void SplatPass::addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const 
   // A margin for what balls that are smaller than a texel are widened, and for filtering.
   const double texelM = 2.0 * reach.x / (block.finePx - 4.0);
   const double half = 0.5 * texelM * (own.sidePx - 2.0);
-  // The first slice towards the light is for what shades the cloud from farther away.
-  const double sliceM = 2.0 * (reach.y + texelM) / (0.5 * block.finePx - (beside == 0 ? 2.0 : 0.0));
+  // The first slice towards a light is for what shades the cloud from farther away.
+  const double sliceM = 2.0 * (reach.y + texelM) /
+                        (0.5 * block.finePx - (beside == kFromKey || beside == kFromSecond ? 2.0 : 0.0));
   const double halfDepth = 0.5 * sliceM * own.slices();
   block.halves[static_cast<std::size_t>(2 * beside)] = static_cast<float>(half);
   block.halves[static_cast<std::size_t>(2 * beside + 1)] = static_cast<float>(halfDepth);
@@ -285,7 +298,7 @@ void SplatPass::addSlices(const Block& block, int beside, const InStack& ball, d
   const double px = 0.5 * own.sidePx + ball.x / texelM, py = 0.5 * own.sidePx + ball.y / texelM;
   for (int four = first / 4; four < own.fours(); ++four) {
     // Its tile, which it may not leave: see pass/splat_depth.vert.
-    const int left = block.x + beside * own.width() + own.sidePx * (four % own.columns()),
+    const int left = block.x + beside * block.pitchPx + own.sidePx * (four % own.columns()),
               lower = block.y + own.sidePx * (four / own.columns());
     values_.insert(values_.end(), {static_cast<float>(left + px), static_cast<float>(lower + py),
                                    static_cast<float>(wider * ball.seenM / texelM), static_cast<float>(depth),
@@ -295,10 +308,12 @@ void SplatPass::addSlices(const Block& block, int beside, const InStack& ball, d
   }
 }
 
-// What other clouds' balls add to the stack of the sun: those in front of it to its first slice.
+// What other clouds' balls add to the stack of a light: those in front of it to its first slice. place: which
+// stack of the block it is.
 void SplatPass::addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
-                          const Block& block) {
-  const auto half = static_cast<double>(block.halves[0]), halfDepthM = static_cast<double>(block.halves[1]);
+                          int place, const Block& block) {
+  const auto half = static_cast<double>(block.halves[static_cast<std::size_t>(2 * place)]),
+             halfDepthM = static_cast<double>(block.halves[static_cast<std::size_t>(2 * place + 1)]);
   const double texelM = 2.0 * half / (block.size.sidePx - 2.0),
                sliceM = 2.0 * halfDepthM / block.size.slices();
   for (std::size_t c = 0; c < clouds.size(); ++c) {
@@ -314,30 +329,45 @@ void SplatPass::addShades(std::span<const SplatCloud> clouds, const glm::dvec3& 
       if (!drawn(b)) continue;
       const glm::dvec3 at = (b.centreM - eyeM - block.centreM) * axes;
       if (std::max(std::abs(at.x), std::abs(at.y)) > half + b.radiusM) continue;
-      addSlices(block, 0, {at.x, at.y, at.z + halfDepthM, b.radiusM, b.radiusM, share * b.density}, texelM,
-                sliceM);
+      addSlices(block, place, {at.x, at.y, at.z + halfDepthM, b.radiusM, b.radiusM, share * b.density},
+                texelM, sliceM);
     }
   }
 }
 
 void SplatPass::drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM) {
-  const glm::dmat3 sun = axesOf(toLight_), sky = axesOf({0.0, 0.0, 1.0});
+  const glm::dmat3 key = axesOf(lights_.toKey), zenith = axesOf({0.0, 0.0, 1.0}),
+                   glow = axesOf(lights_.toGlow), second = axesOf(lights_.toSecond.value_or(lights_.toKey));
   values_.clear();
+  for (Block& b : glows_) addStack(clouds[b.cloud], eyeM, glow, kFromGlow, b);
   for (Block& b : blocks_) {
-    addStack(clouds[b.cloud], eyeM, sun, 0, b);
-    addShades(clouds, eyeM, sun, b);
-    addStack(clouds[b.cloud], eyeM, sky, 1, b);
-    b.halves[4] = b.halves[5] = 0.0f;
-    if (b.share * kEyeStackFrom < 1.0) addStack(clouds[b.cloud], eyeM, axesOf(-b.centreM), 2, b);
+    const SplatCloud& cloud = clouds[b.cloud];
+    addStack(cloud, eyeM, key, kFromKey, b);
+    addShades(clouds, eyeM, key, kFromKey, b);
+    addStack(cloud, eyeM, zenith, kFromZenith, b);
+    b.halves[2 * kFromEye] = b.halves[2 * kFromEye + 1] = 0.0f;
+    if (b.share * kEyeStackFrom < 1.0) addStack(cloud, eyeM, axesOf(-b.centreM), kFromEye, b);
+    if (!lights_.toSecond) continue;
+    addStack(cloud, eyeM, second, kFromSecond, b);
+    addShades(clouds, eyeM, second, kFromSecond, b);
   }
-  for (const Block& shade : shades_) addShades(clouds, eyeM, sun, shade);
+  for (Block& shade : shades_) {
+    addShades(clouds, eyeM, key, 0, shade);
+    if (!lights_.toSecond) continue;
+    shade.halves[2] = shade.halves[0], shade.halves[3] = shade.halves[1];
+    addShades(clouds, eyeM, second, 1, shade);
+  }
   inSlices_.upload(values_);
   const gpu::Tile area{0, 0, depths_.width(), stacksHeight_};
   depth_.set("uPerTexel", 1.0f / glm::vec2(area.width, area.height));
   toDepths_->clear();
   inSlices_.draw(depth_, {toDepths_->id(), area}, {.blend = gpu::Blend::kAdd});
-  light_.set("uSunStack", glm::mat3(sun));
-  light_.set("uSkyStack", glm::mat3(sky));
+  gpu::Program& light = lightProgram();
+  light.set("uSunStack", glm::mat3(key));
+  light.set("uSkyStack", glm::mat3(zenith));
+  light.set("uGlowStack", glm::mat3(glow));
+  light.set("uSecondStack", glm::mat3(second));
+  if (lights_.toSecond) light.set("uSecondDirection", *lights_.toSecond);
 }
 
 void SplatPass::addPieces(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM) {
@@ -433,15 +463,16 @@ void SplatPass::findTiles(double pixelRad) {
 
 void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tables) {
   atLeast(tiles_, toTiles_, kTilesWidthPx, tilesHeight_, gpu::Format::kRgba32F);
-  light_.set("uPerTexel", 1.0f / glm::vec2(kTilesWidthPx, tilesHeight_));
-  light_.set("uEyeM", static_cast<float>(view.eyeM.z));
-  light_.set("uEnuFromCamera", view.enuFromCamera);
-  light_.set("uRayScale", view.rayScale);
-  tables.bind(light_);
-  light_.bind("uDepths", depths_);
+  gpu::Program& light = lightProgram();
+  light.set("uPerTexel", 1.0f / glm::vec2(kTilesWidthPx, tilesHeight_));
+  light.set("uEyeM", static_cast<float>(view.eyeM.z));
+  light.set("uEnuFromCamera", view.enuFromCamera);
+  light.set("uRayScale", view.rayScale);
+  tables.bind(light);
+  light.bind("uDepths", depths_);
   const gpu::Target tiles(toTiles_->id(), {0, 0, kTilesWidthPx, tilesHeight_});
-  inTiles_.draw(light_, tiles, {});
-  pictures_.draw(view, tables, {depths_, glm::mat3(axesOf(toLight_)), kShadeSize.sidePx}, tiles);
+  inTiles_.draw(light, tiles, {});
+  pictures_.draw(view, tables, {depths_, kShadeSize.sidePx}, tiles);
 }
 
 void SplatPass::drawBalls(const shading::ViewParts& view, const SplatTarget& to) {
@@ -465,56 +496,6 @@ void SplatPass::drawBalls(const shading::ViewParts& view, const SplatTarget& to)
   quads_.draw(p, to.target, {.blend = gpu::Blend::kOver});
 }
 
-void SplatPass::drawShadow(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM) {
-  shadowHalfM_ = 0.0f;
-  if (toLight_.z <= 0.0f) return;
-  const glm::dmat3 axes = axesOf(toLight_);
-  const glm::dvec3 underEye(eyeM.x, eyeM.y, 0.0);
-  const auto near = [&](const field::Metaball& b) {
-    return drawn(b) && glm::length(b.centreM - underEye) - b.radiusM < kShadowReachM;
-  };
-  glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
-  for (const SplatCloud& cloud : clouds)
-    for (const field::Metaball& b : cloud.balls) {
-      if (!near(b)) continue;
-      const glm::dvec2 at((b.centreM - underEye) * axes);
-      low = glm::min(low, at - b.radiusM);
-      high = glm::max(high, at + b.radiusM);
-    }
-  if (!(low.x < high.x)) return;
-  if (shadow_.width() == 0) {
-    shadow_ = gpu::Texture2D(kShadowPx, kShadowPx, {.format = gpu::Format::kR32F});
-    toShadow_.emplace(shadow_);
-  }
-  const glm::dvec2 middle = 0.5 * (low + high);
-  const double half = 0.5 * std::max(high.x - low.x, high.y - low.y) * kShadowPx / (kShadowPx - 4.0);
-  const double texelM = 2.0 * half / kShadowPx;
-  values_.clear();
-  for (const SplatCloud& cloud : clouds)
-    for (const field::Metaball& b : cloud.balls) {
-      if (!near(b)) continue;
-      const glm::dvec2 at = (glm::dvec2((b.centreM - underEye) * axes) - middle) / half;
-      const double radiusM = std::max(b.radiusM, texelM), share = b.radiusM / radiusM;
-      values_.insert(
-          values_.end(),
-          {static_cast<float>((0.5 + 0.5 * at.x) * kShadowPx),
-           static_cast<float>((0.5 + 0.5 * at.y) * kShadowPx), static_cast<float>(radiusM / texelM),
-           static_cast<float>(b.density * share * share * share * radiusM), 1.0f, 0.0f, 0.0f, 0.0f});
-    }
-  inSlices_.upload(values_);
-  depth_.set("uPerTexel", glm::vec2(1.0f / kShadowPx));
-  toShadow_->clear();
-  inSlices_.draw(depth_, *toShadow_, {.blend = gpu::Blend::kAdd});
-  shadowAxes_ = {glm::vec4(axes[0], middle.x), glm::vec4(axes[1], middle.y)};
-  shadowHalfM_ = static_cast<float>(half);
-}
-
-void SplatPass::setShadow(gpu::Program& program) const {
-  program.set("uSplatShadowAxes", std::span<const glm::vec4>(shadowAxes_));
-  program.set("uSplatShadowHalfM", shadowHalfM_);
-  if (shadow_.width() > 0) program.bind("uSplatShadow", shadow_);
-}
-
 void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewParts& view,
                      const SkyTextures& tables, const SplatTarget& to) {
   findBlocks(clouds, view);
@@ -528,7 +509,7 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
     const Piece& b = pieces_[i];
     if (b.block & kPicture) continue;
     const glm::vec3& tile = tileOf_[i];
-    const Block& block = blocks_[b.block];
+    const Block &block = blocks_[b.block], &glow = glows_[b.block];
     const SplatCloud& cloud = clouds[block.cloud];
     const glm::vec3 centre(block.centreM);
     const double radii = 1.0 / std::max(static_cast<double>(block.share), 1e-9);
@@ -542,23 +523,27 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
                                    b.density,
                                    static_cast<float>(cloud.phase) + eyeStack,
                                    cloud.albedo,
-                                   0.0f,
+                                   static_cast<float>(glow.x),
                                    centre.x,
                                    centre.y,
                                    centre.z,
-                                   block.halves[4],
-                                   block.halves[0],
-                                   block.halves[1],
-                                   block.halves[2],
-                                   block.halves[3],
+                                   block.halves[2 * kFromEye],
+                                   block.halves[2 * kFromKey],
+                                   block.halves[2 * kFromKey + 1],
+                                   block.halves[2 * kFromZenith],
+                                   block.halves[2 * kFromZenith + 1],
+                                   glow.halves[2 * kFromGlow],
+                                   glow.halves[2 * kFromGlow + 1],
+                                   block.halves[2 * kFromSecond],
+                                   block.halves[2 * kFromSecond + 1],
                                    static_cast<float>(block.x),
                                    static_cast<float>(block.y),
                                    static_cast<float>(block.size.sidePx),
-                                   block.halves[5],
+                                   block.halves[2 * kFromEye + 1],
                                    tile.x,
                                    tile.y,
                                    tile.z,
-                                   0.0f});
+                                   static_cast<float>(glow.y)});
   }
   inTiles_.upload(values_);
   drawLight(view, tables);

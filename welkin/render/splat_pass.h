@@ -3,13 +3,14 @@
 // Efficient Method for Realistic Animation of Clouds", M. J. Harris and A. Lastra 2001, "Real-Time Cloud
 // Rendering", and P. Man 2006, "Generating and Real-Time Rendering of Clouds". Nothing is read back.
 //
-// Light pass: of each cloud the balls' optical depths add up in slices across the light's direction, whatever
-// their order, for the sun (or moon) and for the zenith; finer slices for clouds that are larger in view.
-// From them, the light that each ball sends to the eye, along 2 x 2 to 4 x 4 rays through it by its size in
-// view (3 x 3 to 16 x 16 in stills). Eye
-// pass: the balls from far to near, each with its exact optical depth along every ray. Light scattered more
-// than once is lib/cloud_light.glsl's, as in marched volumes. The phase function is the first scattering's;
-// all later ones are those of droplets. Clouds shade one another in the sun, not under the sky.
+// Light pass: of each cloud the balls' optical depths add up in slices across a light's direction, whatever
+// their order: for sun and moon, as far as they are seen (shading/splat_lights.h), for the zenith and for the
+// side that the sky is bright on; finer slices for clouds that are larger in view. From them, the light that
+// each ball sends to the eye, along 2 x 2 to 4 x 4 rays through it by its size in view (3 x 3 to 16 x 16 in
+// stills). Eye pass: the balls from far to near, each with its exact optical depth along every ray. Light
+// scattered more than once is lib/cloud_light.glsl's, as in marched volumes. The phase function is the first
+// scattering's; all later ones are those of droplets. Clouds shade one another from sun and moon, not under
+// the sky.
 //
 // Of other things in the sky it knows nothing but the depth that an engine hands over: it draws over what is
 // in the target.
@@ -28,31 +29,14 @@
 #include "welkin/gpu/texel_reader.h"
 #include "welkin/render/flare_pass.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/render/splat_cloud.h"
 #include "welkin/render/splat_pictures.h"
-#include "welkin/scene/metaballs.h"
+#include "welkin/render/splat_shadow.h"
+#include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
 
 namespace welkin::render {
-
-using SplatPhase = scene::MetaballPhase;
-
-// One cloud: in the view's world, densities being extinctions, 1/m; negative ones take away. Balls of radius
-// 0 or density 0 are left out.
-struct SplatCloud {
-  std::span<const field::Metaball> balls;
-  SplatPhase phase = SplatPhase::kDroplets;
-  float albedo = 1.0f;  // 0.9 in P. Man
-  // Where two levels of detail fade into one another, the balls of the coarser come first: so many, and their
-  // share. What is found for a cloud's extent then fades with them.
-  std::size_t coarse = ~std::size_t{0};
-  float coarseShare = 1.0f;
-  // As what it shades others, where fewer balls will do.
-  std::span<const field::Metaball> shade{};
-  std::span<const field::Metaball> shades() const { return shade.empty() ? balls : shade; }
-  // Of it that is a picture (render/splat_pictures.h), and not balls.
-  scene::CloudBalls::Far far{};
-};
 
 struct SplatTarget {
   const gpu::Target& target;
@@ -77,18 +61,18 @@ class SplatPass {
                std::span<const scene::LibraryCloud* const> shapes = {});
 
   // What all draws under one sky share; before draws and whenever the sky has changed.
-  void setSky(const shading::Uniforms& sky, const glm::vec3& toLight);
+  void setSky(const shading::Uniforms& sky, const shading::SplatLights& lights);
 
   // Over what is in the target. The picture depends on the arguments alone, not on the balls' order unless
   // two are equally far. Allocates nothing once it has drawn as many balls.
   void draw(std::span<const SplatCloud> clouds, const shading::ViewParts& view, const SkyTextures& tables,
             const SplatTarget& to);
 
-  // Their shadow: optical depths through all of them across the light, for lib/splat_layer.glsl. At most
-  // kShadowReachM from the eye; none where the light stands below the horizon.
-  static constexpr double kShadowReachM = 20000.0;
-  void drawShadow(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
-  void setShadow(gpu::Program& program) const;
+  // Their shadow in the key light, at most SplatShadow::kReachM from the eye.
+  void drawShadow(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM) {
+    shadow_.draw(clouds, eyeM, lights_.toKey, depth_);
+  }
+  void setShadow(gpu::Program& program) const { shadow_.set(program); }
 
  private:
   struct Block;  // a cloud in view, and where its stacks are
@@ -103,6 +87,7 @@ class SplatPass {
     std::uint32_t block;  // or kPicture and the picture's number
   };
   static constexpr std::uint32_t kPicture = 1u << 31;
+  gpu::Program& lightProgram() { return lightPrograms_[lights_.toSecond ? 1 : 0]; }
   void findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view);
   void drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
@@ -114,7 +99,7 @@ class SplatPass {
   };
   void addSlices(const Block& block, int beside, const InStack& ball, double texelM, double sliceM);
   void addShades(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM, const glm::dmat3& axes,
-                 const Block& block);
+                 int place, const Block& block);
   void sort();
   void addPieces(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void findTiles(double pixelRad);
@@ -122,15 +107,17 @@ class SplatPass {
   void drawBalls(const shading::ViewParts& view, const SplatTarget& to);
 
   SplatDetail detail_;
-  gpu::Program depth_, light_;
-  std::array<gpu::Program, 4> eye_;  // bit 0: with distance, bit 1: with an engine's depth
-  gpu::Instances inSlices_{2}, inTiles_{6}, quads_{2};
+  gpu::Program depth_;
+  std::array<gpu::Program, 2> lightPrograms_;  // with the key light, with both lights
+  std::array<gpu::Program, 4> eye_;            // bit 0: with distance, bit 1: with an engine's depth
+  gpu::Instances inSlices_{2}, inTiles_{7}, quads_{2};
   gpu::Texture2D depths_, tiles_;
   std::optional<gpu::Framebuffer> toDepths_, toTiles_;
   int stacksHeight_ = 0, tilesHeight_ = 0;  // texels of the textures that are in use
   gpu::TexelReader depthReader_;
-  glm::vec3 toLight_{0.0f, 0.0f, 1.0f};
+  shading::SplatLights lights_;
   std::vector<Block> blocks_;
+  std::vector<Block> glows_;   // of the same clouds, for the side that the sky is bright on
   std::vector<Block> shades_;  // of pictures, for what shades them
   SplatPictures pictures_;
   std::vector<Whole> wholes_;  // of each cloud; radius 0: none
@@ -140,10 +127,7 @@ class SplatPass {
   std::vector<glm::vec3> tileOf_;     // of each piece: texel at its tile's corner, texels on its side
   std::vector<float> values_;
   std::vector<std::uint32_t> bySize_;
-  gpu::Texture2D shadow_;
-  std::optional<gpu::Framebuffer> toShadow_;
-  std::array<glm::vec4, 2> shadowAxes_{};
-  float shadowHalfM_ = 0.0f;
+  SplatShadow shadow_;
 };
 
 }  // namespace welkin::render

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "welkin/render/programs.h"
+#include "welkin/render/splat_cloud.h"
 
 namespace welkin::render {
 namespace {
@@ -86,8 +87,13 @@ glm::dvec3 turned(const glm::dvec3& p, double turnRad) {
 
 }  // namespace
 
-SplatPictures::SplatPictures(const PictureFineness& fineness)
-    : fineness_(fineness), light_(graphicsProgram("pass/splat_picture.vert", "pass/splat_picture.frag")) {}
+SplatPictures::SplatPictures(const PictureFineness& fineness) : fineness_(fineness) {
+  for (std::size_t i = 0; i < lightPrograms_.size(); ++i) {
+    shading::ShaderDefines defines;
+    if (i == 1) defines.emplace_back("WELKIN_SECOND_LIGHT", "1");
+    lightPrograms_[i] = graphicsProgram("pass/splat_picture.vert", "pass/splat_picture.frag", defines);
+  }
+}
 
 void SplatPictures::reserve(std::size_t pictures, std::span<const scene::LibraryCloud* const> shapes) {
   pictures_.reserve(pictures);
@@ -97,8 +103,15 @@ void SplatPictures::reserve(std::size_t pictures, std::span<const scene::Library
   if (!shapes.empty()) fillGrids();
 }
 
-void SplatPictures::setSky(const shading::Uniforms& sky) {
-  setUniforms(light_, sky);
+void SplatPictures::setSky(const shading::Uniforms& sky, const shading::SplatLights& lights) {
+  lights_ = lights;
+  gpu::Program& light = lightProgram();
+  setUniforms(light, sky);
+  light.set("uSunStack", glm::mat3(axesOf(lights.toKey)));
+  light.set("uGlowStack", glm::mat3(axesOf(lights.toGlow)));
+  if (!lights.toSecond) return;
+  light.set("uSecondStack", glm::mat3(axesOf(*lights.toSecond)));
+  light.set("uSecondDirection", *lights.toSecond);
 }
 
 std::size_t SplatPictures::shapeOf(const scene::LibraryCloud& cloud) {
@@ -225,16 +238,16 @@ void SplatPictures::draw(const shading::ViewParts& view, const SkyTextures& tabl
                                    0.0f});
   }
   tiles_.upload(values_);
-  light_.set("uPerTexel", 1.0f / glm::vec2(to.area.width, to.area.height));
-  light_.set("uEyeM", static_cast<float>(view.eyeM.z));
-  light_.set("uEnuFromCamera", view.enuFromCamera);
-  light_.set("uRayScale", view.rayScale);
-  light_.set("uSunStack", light.sunStack);
-  light_.set("uShapePoints", glm::vec2(kGridPoints, columns_));
-  tables.bind(light_);
-  light_.bind("uDepths", light.depths);
-  light_.bind("uShapes", grids_);
-  tiles_.draw(light_, to, {});
+  gpu::Program& program = lightProgram();
+  program.set("uPerTexel", 1.0f / glm::vec2(to.area.width, to.area.height));
+  program.set("uEyeM", static_cast<float>(view.eyeM.z));
+  program.set("uEnuFromCamera", view.enuFromCamera);
+  program.set("uRayScale", view.rayScale);
+  program.set("uShapePoints", glm::vec2(kGridPoints, columns_));
+  tables.bind(program);
+  program.bind("uDepths", light.depths);
+  program.bind("uShapes", grids_);
+  tiles_.draw(program, to, {});
 }
 
 }  // namespace welkin::render

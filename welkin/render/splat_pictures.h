@@ -9,8 +9,8 @@
 // nearer.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <glm/mat3x3.hpp>
 #include <span>
 #include <vector>
 
@@ -19,6 +19,7 @@
 #include "welkin/gpu/program.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/scene/metaballs.h"
+#include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
 
@@ -35,7 +36,7 @@ class SplatPictures {
 
   // Room for so many; with the fields of the clouds' shapes, which are made at the first picture of one else.
   void reserve(std::size_t pictures, std::span<const scene::LibraryCloud* const> shapes);
-  void setSky(const shading::Uniforms& sky);
+  void setSky(const shading::Uniforms& sky, const shading::SplatLights& lights);
 
   // In a texture for all of them; and the stack of what shades each, in lib/splat_stack.glsl's.
   struct Picture {
@@ -64,8 +65,7 @@ class SplatPictures {
 
   struct Light {
     const gpu::Texture2D& depths;  // with the stacks
-    glm::mat3 sunStack;
-    int shadePx;  // on a slice's side of those
+    int shadePx;                   // on a slice's side of those
   };
   void draw(const shading::ViewParts& view, const SkyTextures& tables, const Light& light,
             const gpu::Target& to);
@@ -75,11 +75,13 @@ class SplatPictures {
     const scene::LibraryCloud* cloud;
     glm::dvec3 middle, half;  // of its box
   };
+  gpu::Program& lightProgram() { return lightPrograms_[lights_.toSecond ? 1 : 0]; }
   std::size_t shapeOf(const scene::LibraryCloud& cloud);
   void fillGrids();
 
   PictureFineness fineness_;
-  gpu::Program light_;
+  std::array<gpu::Program, 2> lightPrograms_;  // with the key light, with both lights
+  shading::SplatLights lights_;
   gpu::Instances tiles_{6};
   gpu::Texture3D grids_;
   int columns_ = 0;         // shapes beside one another

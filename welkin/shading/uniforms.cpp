@@ -97,8 +97,6 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uKeyDirection", state.lights[0].direction);
   u.put("", "uKeyLightTopM", kKeyLightTopM);
   u.put("", "uKeyLightReach", kKeyLightReach);
-  u.put("", "uSkyLow", state.ambient.skyLow);
-  u.put("", "uSkyHigh", state.ambient.skyHigh);
   u.put("", "uSkyOnGround", state.ambient.skyOnGround);
   u.put("", "uGroundLight", state.ambient.ground);
   putMoments(u, "uAboveLight[0]", state.ambient.above);
@@ -135,17 +133,16 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uMoonLuminance", discLuminance(moon, e.moon.angularRadiusRad, e.moonIlluminatedFraction));
 }
 
-void keyLightTable(const scene::SkyState& state, Image<float>& table) {
+void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table) {
   constexpr int kHeights = 64, kSines = 16;
   if (table.data.empty()) table = Image<float>(kHeights, kSines, 3);
-  const sky::Light& key = state.lights[0];
   for (int y = 0; y < kSines; ++y)
     for (int x = 0; x < kHeights; ++x) {
       const double height = kKeyLightTopM * (x + 0.5) / kHeights;
-      const double sine = key.direction.z + kKeyLightReach * (2.0 * (y + 0.5) / kSines - 1.0);
-      const glm::vec3 light = key.illuminance * state.atmosphere->transmittanceToSpace(
-                                                    state.scene.place.altitudeM + height, sine);
-      for (int c = 0; c < 3; ++c) table.at(x, y, c) = light[c];
+      const double sine = light.direction.z + kKeyLightReach * (2.0 * (y + 0.5) / kSines - 1.0);
+      const glm::vec3 arriving = light.illuminance * state.atmosphere->transmittanceToSpace(
+                                                         state.scene.place.altitudeM + height, sine);
+      for (int c = 0; c < 3; ++c) table.at(x, y, c) = arriving[c];
     }
 }
 

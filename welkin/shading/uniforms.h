@@ -35,10 +35,9 @@ Uniforms skyUniforms(const scene::SkyState& state);
 // The same into a list that was filled before: allocates nothing.
 void skyUniforms(const scene::SkyState& state, Uniforms& uniforms);
 
-// The light that reaches clouds through the air: RGB illuminance, lux, by height (columns) and the sine of
-// the light's elevation (rows).
-// Allocates only where the table is empty.
-void keyLightTable(const scene::SkyState& state, Image<float>& table);
+// What of a light of the sky reaches clouds through the air: RGB illuminance, lux, by height (columns) and
+// the sine of the light's elevation (rows). Allocates only where the table is empty.
+void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table);
 
 // How finely to march.
 struct MarchSettings {

@@ -31,6 +31,24 @@ TEST(MetaballMotion, WithoutALifeTheCloudDriftsAndKeepsItsShape) {
   }
 }
 
+// Each ball has the wind of its own height while it lives.
+TEST(MetaballMotion, EachHeightHasItsWind) {
+  const std::vector<Metaball> balls = column(100);
+  const MetaballMotion motion{
+      .windMps = {8, 3, 0}, .shearPerS = {0.01, -0.02, 0}, .referenceM = 200, .lifeS = 1000, .fade = 0.25};
+  const std::vector<Metaball> now = ballsAt(balls, motion, 500.0), later = ballsAt(balls, motion, 501.0);
+  int alive = 0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const glm::dvec3 moved = later[i].centreM - now[i].centreM;
+    const double above = balls[i].centreM.z - 200.0;
+    if (std::abs(moved.x - 8.0) > 0.01 * 800.0 + 1e-9) continue;  // born again in this second
+    EXPECT_NEAR(moved.x, 8.0 + 0.01 * above, 1e-9);
+    EXPECT_NEAR(moved.y, 3.0 - 0.02 * above, 1e-9);
+    ++alive;
+  }
+  EXPECT_GT(alive, 95);
+}
+
 // The expected volume of every ball is its own, at any time.
 TEST(MetaballMotion, GrowthAndDecayKeepTheMean) {
   const std::vector<Metaball> balls = column(20000);

@@ -31,6 +31,20 @@ TEST(CloudLight, VanishesInAWhiteFurnace) {
     }
 }
 
+// What is more on one side is less on the other, and never as much as there is of the even light: twice the
+// tilt times half of that light is what the splats add to it.
+TEST(CloudLight, ATiltIsTheOppositeFromTheOtherSide) {
+  for (const float towards : kDepths)
+    for (const float away : kDepths)
+      for (const float c : {-1.0f, -0.3f, 0.0f, 0.8f, 1.0f}) {
+        const float tilt = cloudTilt(towards, away, c);
+        EXPECT_NEAR(tilt, -cloudTilt(away, towards, -c), 1e-6f);
+        EXPECT_LE(std::abs(tilt), 1.0f);
+      }
+  EXPECT_GT(cloudTilt(0.0f, 50.0f, 0.0f), 0.2f);
+  EXPECT_EQ(cloudTilt(7.0f, 7.0f, 0.0f), 0.0f);
+}
+
 TEST(CloudLight, MoreCloudAboveLetsLessSkyThrough) {
   float last = 1.0f;
   for (const float up : kDepths) {

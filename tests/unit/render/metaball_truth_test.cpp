@@ -25,8 +25,9 @@ constexpr int kSide = 12;
 constexpr double kDistanceM = 4000.0, kRadiusM = 500.0;
 
 // A ball seen level from its own height, so many degrees to the right of the sun.
-scene::Scene ballScene(const MetaballFolder& folder, double fromSunDeg, double density) {
-  scene::Scene s = fromHeight(clearScene(30.0), 1800.0);
+scene::Scene ballScene(const MetaballFolder& folder, double fromSunDeg, double density,
+                       double sunElevationDeg = 30.0) {
+  scene::Scene s = fromHeight(clearScene(sunElevationDeg), 1800.0);
   const sky::Body sun = scene::lightsAt(s, 0.0).ephemeris.sun;
   const double heading = sun.azimuthDeg + fromSunDeg, a = radians(heading);
   s.metaballs = {folder.cloud({{{0.0, 0.0, 0.0}, kRadiusM, density}},
@@ -103,6 +104,27 @@ TEST(MetaballTruth, ABallIsAsBrightAsItsPathsAre) {
     }
   EXPECT_LT(splats / views, 0.25);
   EXPECT_LT(marched / views, 0.2);
+  EXPECT_TRUE(renderer.takeErrors().empty());
+}
+
+// In the light of the sky alone, the sun under the horizon: towards its glow and away from it, where next to
+// nothing is scattered twice and where nearly all is.
+TEST(MetaballTruth, InTwilightABallIsAsBrightAsItsPathsAre) {
+  const MetaballFolder folder;
+  SkyRenderer renderer({.debug = true});
+  double ratios = 0.0;
+  int views = 0;
+  for (const double density : {0.002, 0.1})
+    for (const double fromSunDeg : {20.0, 90.0, 180.0}) {
+      const scene::SkyState state = scene::buildSky(ballScene(folder, fromSunDeg, density, -4.0), 0.0);
+      const Seen truth = traced(state, 800);
+      const double ratio = drawn(renderer, state, scene::MetaballRender::kSplats) / truth.luminance;
+      EXPECT_LT(truth.error, 0.15 * truth.luminance) << density << "/m, " << fromSunDeg << " degrees";
+      EXPECT_NEAR(ratio, 1.0, 0.25) << density << "/m, " << fromSunDeg << " degrees";
+      ratios += ratio;
+      ++views;
+    }
+  EXPECT_NEAR(ratios / views, 1.0, 0.1);
   EXPECT_TRUE(renderer.takeErrors().empty());
 }
 

@@ -34,7 +34,7 @@ class SplatPicturesTest : public ::testing::Test {
     s.camera.eyeM = kEyeM;
     state = scene::buildSky(s, 0.0);
     tables.update(state);
-    pass.setSky(shading::skyUniforms(state), state.lights[0].direction);
+    pass.setSky(shading::skyUniforms(state), shading::splatLights(state));
     view = shading::partsOf(shading::viewOf(state), kSide);
   }
   void TearDown() override {
@@ -232,7 +232,7 @@ TEST_F(SplatPicturesTest, HaveTheirPlaceAmongSheets) {
   };
   const double behind = differences(300.0), before = differences(9000.0);
   EXPECT_GT(before, 0.05);
-  EXPECT_LT(behind, 0.1 * before);
+  EXPECT_LT(behind, 0.2 * before);  // the shadows on the sheet are others, too
   context.makeCurrent();
 }
 

@@ -58,7 +58,7 @@ class SplatTest : public ::testing::Test {
     s.camera.eyeM = 1500.0;
     state = scene::buildSky(s, 0.0);
     tables.update(state);
-    pass.setSky(shading::skyUniforms(state), state.lights[0].direction);
+    pass.setSky(shading::skyUniforms(state), shading::splatLights(state));
   }
   void TearDown() override {
     for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
