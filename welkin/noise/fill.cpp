@@ -54,7 +54,7 @@ HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, 
                           const Each& each) {
   GradientRows rows(job.gradients, scratch, b.x, b.width);
   for (int z = b.z; z < b.z + b.slices; ++z) {
-    rows.beginSlice(z);
+    rows.beginSlices(z, 1);
     for (int y = b.y; y < b.y + b.rows;) {
       const int count = rows.fillChunk(y, b.y + b.rows - y, sums);
       each(z, y, count);
@@ -67,12 +67,10 @@ HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, 
 template <class Sink>
 void fillSink(const FillJob& job, const Block& b, Scratch& scratch) {
   GradientRows rows(job.gradients, scratch, b.x, b.width);
-  for (int z = b.z; z < b.z + b.slices; ++z) {
-    rows.beginSlice(z);
-    for (int y = b.y; y < b.y + b.rows;)
-      y += rows.fillChunkInto(y, b.y + b.rows - y,
-                              [&](int) HWY_ATTR { return Sink(job, b.x, y, z, b.width); });
-  }
+  rows.beginSlices(b.z, b.slices);
+  for (int y = b.y; y < b.y + b.rows;)
+    y += rows.fillChunkInto(y, b.y + b.rows - y,
+                            [&](int slice, int) HWY_ATTR { return Sink(job, b.x, y, b.z + slice, b.width); });
 }
 
 // Sums of gradient noise, each a channel.

@@ -114,6 +114,10 @@ struct ChunkLines {
   std::uint32_t left, count;
 };
 
+// Slices side by side share what the planes of lattice points between them give, where they lie between the
+// same ones.
+inline constexpr int kMostSlices = 2;
+
 // A row of samples between two lines.
 struct RowPlace {
   float weights[4];        // low and high line's weight and reach, all scaled
@@ -139,6 +143,8 @@ struct GradientTables {
   int strip = kStrip;            // samples across
   int chunk = kSmallChunk;       // rows of a chunk
   int lead = 0;                  // of the first chunk before the box's first
+  int slices = 1;                // that are worked on together
+  int leadSlices = 0;            // of the first of these before the box's first
   int lines = 0;                 // in all octaves' rings
   bool published = false;        // some lattice is
   float bias = 0.0f;             // added to every sum

@@ -96,23 +96,32 @@ class Tables {
     g.sums = sums;
     g.bias = static_cast<float>(bias);
     g.fractal = fractal;
-    g.first = memory_.take<int>(static_cast<std::size_t>(sums) + 1);
+    g.first = take<int>(static_cast<std::size_t>(sums) + 1);
     g.first[0] = 0;
     for (int s = 0; s < sums; ++s) g.first[s + 1] = g.first[s] + counts[s];
     g.terms = g.first[sums];
-    g.strip = job_.cellTerms > 0 || g.terms > kManyTerms ? kStrip / 2 : kStrip;
+    const bool narrow = job_.cellTerms > 0 || g.terms > kManyTerms || job_.box.size.x <= kStrip / 2;
+    g.strip = narrow ? kStrip / 2 : kStrip;
     g.chunk = job_.direct() ? kMostChunk : kSmallChunk;
     g.lead = job_.cellTerms > 0 ? job_.lead[1] % g.chunk : 0;  // blocks of cells begin at tiles
     g.lines = 0;
-    g.term = memory_.take<TermTables>(static_cast<std::size_t>(g.terms));
+    g.term = take<TermTables>(static_cast<std::size_t>(g.terms));
     const int rows = job_.box.size.y, chunks = chunkCount(g);
-    g.rows = memory_.take<RowPlace>(static_cast<std::size_t>(g.terms) * rows);
-    g.chunks = memory_.take<ChunkLines>(static_cast<std::size_t>(g.terms) * chunks);
+    g.rows = take<RowPlace>(static_cast<std::size_t>(g.terms) * rows);
+    g.chunks = take<ChunkLines>(static_cast<std::size_t>(g.terms) * chunks);
+    auto* octaves = take<Octave>(static_cast<std::size_t>(g.terms));
     for (int s = 0; s < sums; ++s)
       for (int i = 0; i < counts[s]; ++i) {
-        const GradientTerm& term = termOf(s, i);
-        addTerm(g, g.first[s] + i, term, scale);
+        Octave& octave = octaves[g.first[s] + i];
+        octave = octaveOf(g, termOf(s, i));
+        g.lines += static_cast<int>(octave.lines);
+        g.published = g.published || octave.term->lattice.published();
       }
+    // What other threads would sleep through is a twentieth of a fill in the plane.
+    parallelFor(static_cast<std::size_t>(g.terms), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) addTerm(g, static_cast<int>(t), octaves[t], scale);
+    });
+    if (job_.direct() && job_.box.size.z > 1) pairSlices(g);
   }
 
   void addCells(const CellTerm& term, CellTables& out, double scale) {
@@ -132,9 +141,9 @@ class Tables {
       if (a > 0 && !out.cubes)
         while (out.tile[a] < kTileMost && 2 * out.tile[a] * step <= kTileCells) out.tile[a] *= 2;
       const int first = job_.box.first[a] - job_.lead[a], n = job_.tiled[a];
-      auto* cell = memory_.take<std::int32_t>(static_cast<std::size_t>(n));
-      auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(n));
-      auto* inside = memory_.take<float>(static_cast<std::size_t>(n));
+      auto* cell = take<std::int32_t>(static_cast<std::size_t>(n));
+      auto* index = take<std::uint32_t>(static_cast<std::size_t>(n));
+      auto* inside = take<float>(static_cast<std::size_t>(n));
       double before = 0.0;
       for (int i = 0; i < n; ++i) {
         const Span span = axis.at(position(a, first + i));
@@ -151,8 +160,8 @@ class Tables {
     out.lattice = &term.main;
     out.weight = static_cast<float>(term.weight * scale);
     const int width = padded(job_.box.size.x);
-    auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(width));
-    auto* inside = memory_.take<float>(static_cast<std::size_t>(width));
+    auto* index = take<std::uint32_t>(static_cast<std::size_t>(width));
+    auto* inside = take<float>(static_cast<std::size_t>(width));
     for (int i = 0; i < width; ++i) {
       const Spot s = spotOf(term.main.axis(0), position(0, job_.box.first.x + i));
       index[i] = s.index;
@@ -169,8 +178,17 @@ class Tables {
  private:
   // Cells between samples, from which and up to which tiles are cut into cubes: measured.
   static constexpr double kTileStep = 0.1, kCubeStep = 0.3;
-  static constexpr int kManyTerms = 8;       // octaves from which on strips are half as long: measured
+  static constexpr int kManyTerms = 8;  // octaves from which on strips are half as long: measured
+  static constexpr double kPairPoints =
+      0.1;                                   // of lattices' planes by sample, from which on slices are paired
   static constexpr double kTileCells = 0.5;  // of a cell's edge that a tile spans in y and z
+
+  // Octaves are worked out by several threads.
+  template <class T>
+  T* take(std::size_t count) {
+    const std::lock_guard lock(taking_);
+    return memory_.take<T>(count);
+  }
 
   double position(int axis, int sample) const { return (sample + 0.5) * job_.grid.spacing[axis]; }
 
@@ -181,12 +199,19 @@ class Tables {
     return {span.low, static_cast<float>(span.inside)};
   }
   const Spot* spots(const Axis& axis, int a) {
-    auto* out = memory_.take<Spot>(static_cast<std::size_t>(job_.box.size[a]));
+    auto* out = take<Spot>(static_cast<std::size_t>(job_.box.size[a]));
     for (int i = 0; i < job_.box.size[a]; ++i) out[i] = spotOf(axis, position(a, job_.box.first[a] + i));
     return out;
   }
 
-  void addTerm(GradientTables& g, int t, const GradientTerm& term, double scale) {
+  // An octave, and its lines among those of all.
+  struct Octave {
+    const GradientTerm* term;
+    std::uint32_t firstLine, lines;
+  };
+
+  void addTerm(const GradientTables& g, int t, const Octave& octave, double scale) {
+    const GradientTerm& term = *octave.term;
     const GradientLattice& lattice = term.lattice;
     TermTables& out = g.term[t];
     out.lattice = &lattice;
@@ -207,7 +232,6 @@ class Tables {
              x.corner.highWeight,
              x.corner.highReach};
     if (lattice.published()) {
-      g.published = true;
       out.x.lowHash = x.low;
       out.x.highHash = x.high;
     } else {
@@ -218,11 +242,11 @@ class Tables {
       }
     }
 
-    addRows(g, t, lineOf(lattice.axis(1), 1, term.derivative == 1), yScale);
+    addRows(g, t, lineOf(lattice.axis(1), 1, term.derivative == 1), octave, yScale);
     out.z = nullptr;
     if (dimensions_ == 3) {
       const Line z = lineOf(lattice.axis(2), 2, term.derivative == 2);
-      auto* places = memory_.take<Place>(static_cast<std::size_t>(z.count));
+      auto* places = take<Place>(static_cast<std::size_t>(z.count));
       for (int k = 0; k < z.count; ++k) places[k] = z.place(k);
       out.z = places;
     }
@@ -232,6 +256,26 @@ class Tables {
       makeCorners(time.inside, 1, false, time.corner);
       out.time = time.place(0);
     }
+  }
+
+  // Slices by two, from the first or the second on: as share more planes of lattice points. Where there are
+  // few points, it is better to write memory in its own order.
+  void pairSlices(GradientTables& g) const {
+    double shared[2] = {}, all = 0.0;
+    for (int t = 0; t < g.terms; ++t) {
+      const GradientLattice& lattice = *g.term[t].lattice;
+      const double points = lattice.axis(0).frequency() * lattice.axis(1).frequency();
+      all += points * job_.grid.spacing.x * job_.grid.spacing.y;
+      for (int z = 0; z + 1 < job_.box.size.z; ++z) {
+        const Place &first = g.term[t].z[z], &second = g.term[t].z[z + 1];
+        const int planes =
+            second.lowIndex == first.lowIndex ? 2 : (second.lowIndex == first.highIndex ? 1 : 0);
+        shared[z % 2] += points * planes;
+      }
+    }
+    if (all < kPairPoints) return;
+    g.slices = kMostSlices;
+    g.leadSlices = shared[1] > shared[0] ? 1 : 0;
   }
 
   // Samples along an axis, padded.
@@ -251,9 +295,8 @@ class Tables {
   Line takeLine(int samples) {
     const int count = padded(samples);
     const auto n = static_cast<std::size_t>(count);
-    const auto floats = [&] { return memory_.take<float>(n); };
-    Line line{
-        count, memory_.take<double>(n), memory_.take<std::uint32_t>(n), memory_.take<std::uint32_t>(n), {}};
+    const auto floats = [&] { return take<float>(n); };
+    Line line{count, take<double>(n), take<std::uint32_t>(n), take<std::uint32_t>(n), {}};
     line.corner = {floats(), floats(), floats(), floats()};
     return line;
   }
@@ -264,7 +307,7 @@ class Tables {
   }
 
   const std::uint32_t* oddHashes(const Axis& axis, const std::uint32_t* index, int count) {
-    auto* hashed = memory_.take<std::uint32_t>(static_cast<std::size_t>(padded(count)) + kPad);
+    auto* hashed = take<std::uint32_t>(static_cast<std::size_t>(padded(count)) + kPad);
     makeHashes(axis.key(), index, count, hashed);
     for (int i = 0; i < count; ++i) hashed[i] |= 1u;
     return hashed;
@@ -273,7 +316,7 @@ class Tables {
   // The points of a row one after the other, where no sample lies more than a cell after the one before, or
   // before it by an error of rounding.
   void addPoints(const Axis& axis, const Line& x, RowPlaces& out) {
-    auto* cell = memory_.take<std::int32_t>(static_cast<std::size_t>(x.count));
+    auto* cell = take<std::int32_t>(static_cast<std::size_t>(x.count));
     cell[0] = 0;
     for (int i = 1; i < x.count; ++i) {
       const bool next = x.low[i] != x.low[i - 1];
@@ -281,7 +324,7 @@ class Tables {
       cell[i] = cell[i - 1] + (next ? 1 : 0);
     }
     const int points = cell[x.count - 1] + 2;
-    auto* index = memory_.take<std::uint32_t>(static_cast<std::size_t>(padded(points)));
+    auto* index = take<std::uint32_t>(static_cast<std::size_t>(padded(points)));
     index[0] = x.low[0];
     for (int i = 1; i < points; ++i) index[i] = index[i - 1] + 1 == axis.period() ? 0 : index[i - 1] + 1;
     out.cell = cell;
@@ -320,21 +363,24 @@ class Tables {
     return line;
   }
 
-  // Which lines of lattice points the rows lie between, chunk by chunk.
-  void addRows(GradientTables& g, int t, const Line& y, float scale) {
-    const int rows = job_.box.size.y, chunks = chunkCount(g);
-    const Axis& axis = g.term[t].lattice->axis(1);
+  static int mostLines(const GradientTables& g) { return 2 * g.chunk + 2; }
+  Octave octaveOf(const GradientTables& g, const GradientTerm& term) const {
     // Rows less than a cell apart share lines: those over so many cells lie between three more, two are from
     // the chunk before, and roundings may make some twice.
-    const int most = 2 * g.chunk + 2;
-    const double cells = axis.frequency() * job_.grid.spacing.y * g.chunk;
-    const auto ring =
-        static_cast<std::uint32_t>(cells < g.chunk ? std::min(static_cast<int>(cells) + 7, most) : most);
-    const auto first = static_cast<std::uint32_t>(g.lines),
-               stride = static_cast<std::uint32_t>(lineStride(g.strip));
-    g.lines += static_cast<int>(ring);
-    LineRef* next = memory_.take<LineRef>(static_cast<std::size_t>(chunks) * most);
-    auto* hash = memory_.take<std::uint32_t>(static_cast<std::size_t>(chunks) * most + kPad);
+    const int most = mostLines(g);
+    const double cells = term.lattice.axis(1).frequency() * job_.grid.spacing.y * g.chunk;
+    return {&term, static_cast<std::uint32_t>(g.lines),
+            static_cast<std::uint32_t>(cells < g.chunk ? std::min(static_cast<int>(cells) + 7, most) : most)};
+  }
+
+  // Which lines of lattice points the rows lie between, chunk by chunk.
+  void addRows(const GradientTables& g, int t, const Line& y, const Octave& octave, float scale) {
+    const int rows = job_.box.size.y, chunks = chunkCount(g);
+    const Axis& axis = g.term[t].lattice->axis(1);
+    const int most = mostLines(g);
+    const auto stride = static_cast<std::uint32_t>(lineStride(g.strip));
+    LineRef* next = take<LineRef>(static_cast<std::size_t>(chunks) * most);
+    auto* hash = take<std::uint32_t>(static_cast<std::size_t>(chunks) * most + kPad);
     std::uint32_t slot = 0;
     const LineRef* last[2] = {};  // of the row before
     for (int c = 0; c < chunks; ++c) {
@@ -352,7 +398,7 @@ class Tables {
           for (const LineRef* l : {last[1], last[0]})
             if (l != nullptr && l->index == index) return l;
           LineRef& made = next[chunk.count++];
-          made = {index, (first + slot++ % ring) * stride};
+          made = {index, (octave.firstLine + slot++ % octave.lines) * stride};
           return static_cast<const LineRef*>(&made);
         };
         const LineRef* low = find(y.low[row]);
@@ -373,6 +419,7 @@ class Tables {
 
   FillJob& job_;
   Scratch& memory_;
+  std::mutex taking_;
   int dimensions_;
 };
 
@@ -455,15 +502,16 @@ void fillGrid(FillJob& job) {
   // Blocks: of gradients as tall as leaves every thread several, so that rows share what lies between rows of
   // lattice points; of cells small enough for a core's own cache.
   const int strip = cells ? 128 : job.gradients.strip;
-  int rows = size.y, slices = 1;
+  int rows = size.y, slices = job.gradients.slices;
   if (cells) {
     rows = p.dimensions == 3 ? 16 : 64;
     slices = p.kind == Kind::kCellular ? 16 : 8;
-  } else if (size.z < 4 * threadCount()) {
+  } else if (size.z < 4 * slices * threadCount()) {
     rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
   }
   const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
-  const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0, leadZ = cells ? job.lead[2] : 0;
+  const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0,
+            leadZ = cells ? job.lead[2] : job.gradients.leadSlices;
   const int across = parts(size.x, strip, leadX), down = parts(size.y, rows, leadY),
             deep = parts(size.z, slices, leadZ);
   const auto body = [&](std::size_t begin, std::size_t end) {

@@ -41,6 +41,8 @@ struct Plane {
   float reach[2];       // the same with an axis' reach in its weight's place, third and fourth
 };
 
+inline constexpr int kMaxPlanes = 4;
+
 // Vectors of samples of a row that are summed side by side, and stored together.
 inline constexpr int kVectors = 4;
 
@@ -86,42 +88,54 @@ struct PointValue {
   VF level, slope, b;
 };
 
-// These of a line's points. Components of gradients of three and four axes are 0 or +-2, so that their
-// products with weights are exact, and it makes no difference whether these are looked up or multiplied.
-template <int kAxes>
+// These of a line's points in kSlices slices, of which the second lies between the same planes of lattice
+// points as the first (kShift 0) or between the first's upper one and the next (1): what does not depend on
+// weights is looked up once for each plane. Components of gradients of three and four axes are 0 or +-2, so
+// that their products with weights are exact, and it makes no difference whether these are looked up or
+// multiplied.
+template <int kAxes, int kSlices = 1, int kShift = 0>
 class Points {
  public:
-  static constexpr int kPlanes = 1 << (kAxes - 2);
+  static constexpr int kPlanes = 1 << (kAxes - 2);                    // of a slice
+  static constexpr int kDistinct = kPlanes + (kSlices - 1) * kShift;  // of all of them
 
+  // kMaxPlanes planes a slice.
   explicit HWY_INLINE Points(const Plane* planes) {
     const Floats d;
-    for (int p = 0; p < kPlanes; ++p)
-      if constexpr (kTables)
-        table_[p] =
-            weighted(planes[p], gradients_.where(hn::ShiftLeft<kGradientShift>(hn::Iota(Words(), 0))));
-      else if constexpr (kAxes > 2) {
-        weight_[p] = hn::Set(d, planes[p].weight);
-        for (int i = 0; i < kAxes - 2; ++i) reach_[p][i] = hn::Set(d, planes[p].reach[i]);
+    for (int s = 0; s < kSlices; ++s)
+      for (int p = 0; p < kPlanes; ++p) {
+        const Plane& plane = planes[kMaxPlanes * s + p];
+        if constexpr (kTables)
+          table_[s][p] =
+              weighted(plane, gradients_.where(hn::ShiftLeft<kGradientShift>(hn::Iota(Words(), 0))));
+        else if constexpr (kAxes > 2) {
+          weight_[s][p] = hn::Set(d, plane.weight);
+          for (int i = 0; i < kAxes - 2; ++i) reach_[s][p][i] = hn::Set(d, plane.reach[i]);
+        }
       }
   }
 
-  // Of the points with these hashes in each plane.
+  // Of the points with these hashes in each distinct plane, by slice.
   template <class HashOf>
-  HWY_INLINE PointValue operator()(const HashOf& hashOf) const {
-    PointValue sum = one(0, hashOf(0));
-    for (int p = 1; p < kPlanes; ++p) {
-      const VU hash = hashOf(p);
-      if constexpr (kTables || kAxes == 4) {
-        const PointValue v = one(p, hash);
-        sum = {hn::Add(sum.level, v.level), hn::Add(sum.slope, v.slope), hn::Add(sum.b, v.b)};
-      } else {
-        const VU at = gradients_.where(hash);
-        sum.level = hn::MulAdd(gradients_.component(2, at), reach_[p][0], sum.level);
-        sum.slope = hn::MulAdd(gradients_.component(0, at), weight_[p], sum.slope);
-        sum.b = hn::MulAdd(gradients_.component(1, at), weight_[p], sum.b);
+  HWY_INLINE void operator()(const HashOf& hashOf, PointValue* HWY_RESTRICT sums) const {
+    for (int q = 0; q < kDistinct; ++q) {
+      const Found found(*this, hashOf(q));
+      for (int s = 0; s < kSlices; ++s) {
+        const int p = q - kShift * s;
+        if (p < 0 || p >= kPlanes) continue;
+        PointValue& sum = sums[s];
+        if (p == 0) {
+          sum = one(s, p, found);
+        } else if constexpr (kTables || kAxes == 4) {
+          const PointValue v = one(s, p, found);
+          sum = {hn::Add(sum.level, v.level), hn::Add(sum.slope, v.slope), hn::Add(sum.b, v.b)};
+        } else if constexpr (kAxes == 3) {
+          sum.level = hn::MulAdd(found.component[2], reach_[s][p][0], sum.level);
+          sum.slope = hn::MulAdd(found.component[0], weight_[s][p], sum.slope);
+          sum.b = hn::MulAdd(found.component[1], weight_[s][p], sum.b);
+        }
       }
     }
-    return sum;
   }
 
  private:
@@ -132,19 +146,30 @@ class Points {
   static constexpr bool kTables = false;
 #endif
 
-  HWY_INLINE PointValue one(int p, VU hash) const {
+  // What a hash gives to every slice: its place in tables, or its gradient.
+  struct Found {
+    HWY_INLINE Found(const Points& points, VU hash) {
+      if constexpr (kTables) {
+        // The processor looks at the lowest bits of an index alone.
+        index = hn::ShiftRight<kGradientShift>(hash);
+      } else {
+        const VU at = Gradients<kAxes>::where(hash);
+        for (int a = 0; a < kAxes; ++a) component[a] = points.gradients_.component(a, at);
+      }
+    }
+    VU index;
+    VF component[kAxes];
+  };
+
+  HWY_INLINE PointValue one(int s, int p, const Found& found) const {
     if constexpr (kTables) {
-      const PointValue& table = table_[p];
-      // The processor looks at the lowest bits of an index alone.
-      const VU index = hn::ShiftRight<kGradientShift>(hash);
-      const auto look = [&](VF from) HWY_ATTR { return lookedUp(from, index); };
+      const PointValue& table = table_[s][p];
+      const auto look = [&](VF from) HWY_ATTR { return lookedUp(from, found.index); };
       return {kAxes == 2 ? hn::Zero(Floats()) : look(table.level), look(table.slope), look(table.b)};
     } else if constexpr (kAxes == 2) {
-      const VU at = gradients_.where(hash);
-      return {hn::Zero(Floats()), gradients_.component(0, at), gradients_.component(1, at)};
+      return {hn::Zero(Floats()), found.component[0], found.component[1]};
     } else {
-      const VU at = gradients_.where(hash);
-      return byWeights(at, weight_[p], reach_[p]);
+      return byWeights(found.component, weight_[s][p], reach_[s][p]);
     }
   }
 
@@ -159,24 +184,25 @@ class Points {
 
   HWY_INLINE PointValue weighted(const Plane& plane, VU at) const {
     const Floats d;
+    VF component[kAxes];
+    for (int a = 0; a < kAxes; ++a) component[a] = gradients_.component(a, at);
     if constexpr (kAxes == 2) {
-      return {hn::Zero(d), gradients_.component(0, at), gradients_.component(1, at)};
+      return {hn::Zero(d), component[0], component[1]};
     } else {
       const VF reach[2] = {hn::Set(d, plane.reach[0]), hn::Set(d, plane.reach[1])};
-      return byWeights(at, hn::Set(d, plane.weight), reach);
+      return byWeights(component, hn::Set(d, plane.weight), reach);
     }
   }
 
-  HWY_INLINE PointValue byWeights(VU at, VF weight, const VF* reach) const {
-    VF level = hn::Mul(gradients_.component(2, at), reach[0]);
-    if constexpr (kAxes == 4) level = hn::MulAdd(gradients_.component(3, at), reach[1], level);
-    return {level, hn::Mul(gradients_.component(0, at), weight),
-            hn::Mul(gradients_.component(1, at), weight)};
+  static HWY_INLINE PointValue byWeights(const VF* component, VF weight, const VF* reach) {
+    VF level = hn::Mul(component[2], reach[0]);
+    if constexpr (kAxes == 4) level = hn::MulAdd(component[3], reach[1], level);
+    return {level, hn::Mul(component[0], weight), hn::Mul(component[1], weight)};
   }
 
   const Gradients<kAxes> gradients_;
-  PointValue table_[kPlanes];
-  VF weight_[kPlanes], reach_[kPlanes][2];
+  PointValue table_[kSlices][kPlanes];
+  VF weight_[kSlices][kPlanes], reach_[kSlices][kPlanes][2];
 };
 
 }  // namespace welkin::noise::HWY_NAMESPACE

@@ -28,8 +28,10 @@ class GradientRows {
   GradientRows(const GradientTables& tables, Scratch& scratch, int x, int width)
       : tables_(tables), x_(x), width_(padded(width)) {
     const auto terms = static_cast<std::size_t>(tables.terms);
-    lines_ = scratch.take<float>(static_cast<std::size_t>(tables.lines) * lineStride(tables.strip));
-    planes_ = scratch.take<Plane>(kMaxPlanes * terms);
+    sliceStride_ = static_cast<std::ptrdiff_t>(tables.lines) * lineStride(tables.strip);
+    lines_ = scratch.take<float>(static_cast<std::size_t>(sliceStride_ * tables.slices));
+    planes_ = scratch.take<Plane>(kPlanesOfTerm * terms);
+    shared_ = scratch.take<SharedPlanes>(terms);
     points_ = scratch.take<float>(std::size_t{kSideBySide} * kPointValues * kPointStride);
     below_ = scratch.take<std::int32_t>(terms * kStrip);
     for (int t = 0; t < tables.terms; ++t)
@@ -38,42 +40,54 @@ class GradientRows {
     if (tables.published) published_ = scratch.take<std::uint32_t>(std::size_t{4} * kMostLines * kStrip);
   }
 
-  void beginSlice(int z) {
-    for (int t = 0; t < tables_.terms; ++t) makePlanes(t, z);
+  // Slices from z on, at most as many as tables.slices, are worked on together from here on.
+  void beginSlices(int z, int count) {
+    slices_ = count;
+    for (int t = 0; t < tables_.terms; ++t) {
+      for (int s = 0; s < count; ++s) makePlanes(t, z + s, planesOf(t, s));
+      shared_[t] = count == 2 ? sharedPlanes(t) : SharedPlanes::kNone;
+    }
     fresh_ = true;
   }
 
   // The rows of every sum from y on that are in the same chunk, at most `rows`; returns their number. The
-  // samples from i on of row r of sum s go to sinkOf(s)(r, i, vectors), kVectors at a time; the last ones may
-  // be past the width. Chunks of a slice must follow one another.
+  // samples from i on of row r of sum s go to sinkOf(slice, s)(r, i, vectors), kVectors at a time; the last
+  // ones may be past the width. Chunks of a slice must follow one another.
   template <class SinkOf>
   HWY_INLINE int fillChunkInto(int y, int rows, const SinkOf& sinkOf) {
     rows = expandChunk(y, rows);
-    for (int s = 0; s < tables_.sums; ++s) {
-      const int first = tables_.first[s], terms = tables_.first[s + 1] - first;
-      const RowPlace* places = tables_.rows + static_cast<std::ptrdiff_t>(y) * tables_.terms + first;
-      const auto sink = sinkOf(s);
-      switch (tables_.fractal) {
-        case Fractal::kFbm:
-          if (terms == 1)
-            sumOne(places, rows, sink);
-          else
-            sum<Fractal::kFbm>(first, terms, places, rows, sink);
-          break;
-        case Fractal::kBillow:
-          sum<Fractal::kBillow>(first, terms, places, rows, sink);
-          break;
-        case Fractal::kRidged:
-          sum<Fractal::kRidged>(first, terms, places, rows, sink);
-          break;
-      }
-    }
+    for (int slice = 0; slice < slices_; ++slice) sumSlice(slice, y, rows, sinkOf);
     return rows;
   }
 
-  // Row r of sum s goes to out[s] + r * strip.
+  // The rows of a chunk of one slice, whose lines are made.
+  template <class SinkOf>
+  HWY_NOINLINE void sumSlice(int slice, int y, int rows, const SinkOf& sinkOf) const {
+    for (int s = 0; s < tables_.sums; ++s) {
+      const int first = tables_.first[s], terms = tables_.first[s + 1] - first;
+      const SumOf of{first, terms, rows, lines_ + slice * sliceStride_,
+                     tables_.rows + static_cast<std::ptrdiff_t>(y) * tables_.terms + first};
+      const auto sink = sinkOf(slice, s);
+      switch (tables_.fractal) {
+        case Fractal::kFbm:
+          if (terms == 1)
+            sumOne(of, sink);
+          else
+            sum<Fractal::kFbm>(of, sink);
+          break;
+        case Fractal::kBillow:
+          sum<Fractal::kBillow>(of, sink);
+          break;
+        case Fractal::kRidged:
+          sum<Fractal::kRidged>(of, sink);
+          break;
+      }
+    }
+  }
+
+  // Row r of sum s of the one slice goes to out[s] + r * strip.
   HWY_NOINLINE int fillChunk(int y, int rows, float* const* out) {
-    return fillChunkInto(y, rows, [out, strip = tables_.strip](int s) HWY_ATTR {
+    return fillChunkInto(y, rows, [out, strip = tables_.strip](int, int s) HWY_ATTR {
       float* HWY_RESTRICT to = out[s];
       return [to, strip](int row, int i, const VF* v) HWY_ATTR {
         const Floats d;
@@ -84,9 +98,9 @@ class GradientRows {
   }
 
  private:
-  static constexpr std::size_t kMaxPlanes = 4;
+  static constexpr std::size_t kPlanesOfTerm = kMaxPlanes * kMostSlices;
   // A strip has as many points as samples and two, and vectors may reach over the last.
-  static constexpr int kSideBySide = 3, kPointValues = 3, kPointStride = kStrip + kPad;
+  static constexpr int kSideBySide = 4, kPointValues = 3, kPointStride = kStrip + kPad;
 
   // From the point below each vector's first sample to those below all of its samples.
   void makeBelow(const std::int32_t* HWY_RESTRICT cell, std::int32_t* HWY_RESTRICT below) const {
@@ -95,6 +109,13 @@ class GradientRows {
       hn::Store(hn::Sub(hn::LoadU(di, cell + i), hn::Set(di, cell[i])), di, below + i);
   }
 
+  // Lines that are not left from the chunk before.
+  struct NewLines {
+    const LineRef* line;
+    const std::uint32_t* hash;
+    int count;
+  };
+
   // Makes the lines of the chunk that row y is in; returns how many rows, at most `rows`, follow in it.
   int expandChunk(int y, int rows) {
     const int chunk = (y + tables_.lead) / tables_.chunk;
@@ -102,18 +123,35 @@ class GradientRows {
     for (int t = 0; t < tables_.terms; ++t) {
       const std::uint32_t left = fresh_ ? 0 : lines[t].left;
       if (left < lines[t].count)
-        expand(t, lines[t].line + left, lines[t].hash + left, static_cast<int>(lines[t].count - left));
+        expand(t, {lines[t].line + left, lines[t].hash + left, static_cast<int>(lines[t].count - left)});
     }
     fresh_ = false;
     return HWY_MIN(rows, (chunk + 1) * tables_.chunk - tables_.lead - y);
   }
 
-  void makePlanes(int t, int z) {
+  // Which planes of lattice points two slices share.
+  enum class SharedPlanes : std::uint8_t {
+    kNone,
+    kBoth,
+    kNext
+  };  // kNext: the first's upper is the second's lower
+
+  Plane* planesOf(int t, int slice) const { return planes_ + kPlanesOfTerm * t + kMaxPlanes * slice; }
+
+  SharedPlanes sharedPlanes(int t) const {
+    const GradientLattice& lattice = *tables_.term[t].lattice;
+    if (lattice.axes() != 3 || lattice.published()) return SharedPlanes::kNone;
+    const Plane *first = planesOf(t, 0), *second = planesOf(t, 1);
+    if (first[0].index == second[0].index && first[1].index == second[1].index) return SharedPlanes::kBoth;
+    return first[1].index == second[0].index ? SharedPlanes::kNext : SharedPlanes::kNone;
+  }
+
+  void makePlanes(int t, int z, Plane* planes) const {
     const TermTables& term = tables_.term[t];
     const Place outer[2] = {term.z != nullptr ? term.z[z] : term.time, term.time};
     const int axes = term.lattice->axes();
     for (int p = 0; p < 1 << (axes - 2); ++p) {
-      Plane& plane = planes_[kMaxPlanes * t + p];
+      Plane& plane = planes[p];
       plane = {0, 0, 1.0f, {1.0f, 1.0f}};
       for (int e = 2; e < axes; ++e) {
         const bool high = (p >> (e - 2) & 1) != 0;
@@ -127,61 +165,63 @@ class GradientRows {
     }
   }
 
-  void expand(int t, const LineRef* lines, const std::uint32_t* hashes, int count) {
-    switch (tables_.term[t].lattice->axes()) {
-      case 2:
-        return expandLines<2>(t, lines, hashes, count);
-      case 3:
-        return expandLines<3>(t, lines, hashes, count);
-      default:
-        return expandLines<4>(t, lines, hashes, count);
-    }
+  void expand(int t, const NewLines& made) {
+    if (shared_[t] == SharedPlanes::kBoth) return expandLines<3, 2, 0>(t, 0, made);
+    if (shared_[t] == SharedPlanes::kNext) return expandLines<3, 2, 1>(t, 0, made);
+    for (int slice = 0; slice < slices_; ++slice) switch (tables_.term[t].lattice->axes()) {
+        case 2:
+          expandLines<2, 1, 0>(t, slice, made);
+          break;
+        case 3:
+          expandLines<3, 1, 0>(t, slice, made);
+          break;
+        default:
+          expandLines<4, 1, 0>(t, slice, made);
+          break;
+      }
   }
 
-  template <int kAxes>
-  HWY_NOINLINE void expandLines(int t, const LineRef* lines, const std::uint32_t* hashes, int count) {
+  // In the slices from `slice` on, kSlices of them (Points says what kShift is).
+  template <int kAxes, int kSlices, int kShift>
+  HWY_NOINLINE void expandLines(int t, int slice, const NewLines& made) {
+    using P = Points<kAxes, kSlices, kShift>;
     const Words du;
     const TermTables& term = tables_.term[t];
-    constexpr int kPlanes = 1 << (kAxes - 2);
-    HWY_ALIGN std::uint32_t rows[kPlanes][padded(kMostLines)];
-    for (int p = 0; p < kPlanes; ++p)
-      for (int n = 0; n < count; n += static_cast<int>(hn::Lanes(du))) {
-        const auto sum = hn::Add(hn::LoadU(du, hashes + n), hn::Set(du, planes_[kMaxPlanes * t + p].hash));
+    const Plane* planes = planesOf(t, slice);
+    HWY_ALIGN std::uint32_t rows[P::kDistinct][padded(kMostLines)];
+    const Plane* plane[P::kDistinct];
+    for (int p = 0; p < P::kDistinct; ++p)
+      plane[p] = p < P::kPlanes ? planes + p : planes + kMaxPlanes + (p - kShift);
+    for (int p = 0; p < P::kDistinct; ++p)
+      for (int n = 0; n < made.count; n += static_cast<int>(hn::Lanes(du))) {
+        const auto sum = hn::Add(hn::LoadU(du, made.hash + n), hn::Set(du, plane[p]->hash));
         hn::Store(hn::Or(mixedWords(sum), hn::Set(du, 1u)), du, rows[p] + n);
       }
     Hashes hash{};  // stays so where points are gathered: they have hashes of their own
     if (term.x.lowHash != nullptr) hash = {term.x.lowHash + x_, term.x.highHash + x_, 0, 0};
     if (term.lattice->published()) {
-      hash = {published_, published_ + kStrip, std::ptrdiff_t{2} * kStrip * kPlanes,
+      hash = {published_, published_ + kStrip, std::ptrdiff_t{2} * kStrip * P::kDistinct,
               std::ptrdiff_t{2} * kStrip};
-      for (int n = 0; n < count; ++n)
-        for (int p = 0; p < kPlanes; ++p) {
-          publishedHashes(term, lines[n].index, planes_[kMaxPlanes * t + p].index,
+      for (int n = 0; n < made.count; ++n)
+        for (int p = 0; p < P::kDistinct; ++p) {
+          publishedHashes(term, made.line[n].index, plane[p]->index,
                           published_ + n * hash.line + p * hash.plane);
           rows[p][n] = 1;
         }
     }
-    const Points<kAxes> points(planes_ + kMaxPlanes * t);
+    const P points(planes);
     // With two axes an evaluation costs no more than what gathering adds.
     const bool gathered = kAxes > 2 && term.x.pointHash != nullptr && gathers(term.x.step);
+    float* const to = lines_ + slice * sliceStride_;
     // Lines side by side share the loads of factors.
-    for (int n = 0; n < count;) {
-      const std::uint32_t* row = &rows[0][n];
-      const int side = HWY_MIN(gathered ? kSideBySide : 2, count - n);
-      if (gathered && side == 3)
-        gather<kAxes, 3>(points, t, lines, row);
-      else if (gathered && side == 2)
-        gather<kAxes, 2>(points, t, lines, row);
-      else if (gathered)
-        gather<kAxes, 1>(points, t, lines, row);
-      else if (side == 2)
-        scatter<kAxes, 2>(points, term.x, hash, lines, row);
+    constexpr int kGathered = kSlices == 1 ? 3 : kSideBySide / kSlices, kScattered = 2 / kSlices;
+    for (int n = 0; n < made.count;) {
+      const Side side{made.line + n, &rows[0][n], to};
+      const int left = made.count - n;
+      if (gathered)
+        n += gatherSome<kGathered>(points, t, side, left);
       else
-        scatter<kAxes, 1>(points, term.x, hash, lines, row);
-      n += side;
-      lines += side;
-      hash.low += side * hash.line;
-      hash.high += side * hash.line;
+        n += scatterSome<kScattered>(points, term.x, hash, n, side, left);
     }
   }
 
@@ -198,32 +238,61 @@ class GradientRows {
     std::ptrdiff_t line, plane;
   };
 
+  // Lines side by side: factors of their hashes by plane, and where the first slice's lie.
+  struct Side {
+    const LineRef* lines;
+    const std::uint32_t* rows;
+    float* to;
+  };
+
+  // At most kCount of `left` lines; returns how many.
+  template <int kCount, class P>
+  HWY_INLINE int gatherSome(const P& points, int t, const Side& side, int left) const {
+    if constexpr (kCount > 1)
+      if (left < kCount) return gatherSome<kCount - 1>(points, t, side, left);
+    gather<kCount>(points, t, side);
+    return kCount;
+  }
+  template <int kCount, class P>
+  HWY_INLINE int scatterSome(const P& points, const RowPlaces& x, Hashes hash, int n, const Side& side,
+                             int left) const {
+    if constexpr (kCount > 1)
+      if (left < kCount) return scatterSome<kCount - 1>(points, x, hash, n, side, left);
+    hash.low += n * hash.line;
+    hash.high += n * hash.line;
+    scatter<kCount>(points, x, hash, side);
+    return kCount;
+  }
+
   // Lines whose points are evaluated for every sample.
-  template <int kAxes, int kCount>
-  HWY_INLINE void scatter(const Points<kAxes>& points, const RowPlaces& x, const Hashes& hash,
-                          const LineRef* lines, const std::uint32_t* rows) const {
+  template <int kCount, int kAxes, int kSlices, int kShift>
+  HWY_INLINE void scatter(const Points<kAxes, kSlices, kShift>& points, const RowPlaces& x,
+                          const Hashes& hash, const Side& side) const {
+    using P = Points<kAxes, kSlices, kShift>;
     const Words du;
-    constexpr int kPlanes = 1 << (kAxes - 2);
-    VU row[kPlanes][kCount];
+    VU row[P::kDistinct][kCount];
     for (int n = 0; n < kCount; ++n)
-      for (int p = 0; p < kPlanes; ++p) row[p][n] = hn::Set(du, rows[p * padded(kMostLines) + n]);
+      for (int p = 0; p < P::kDistinct; ++p) row[p][n] = hn::Set(du, side.rows[p * padded(kMostLines) + n]);
     const auto nothing = [](int) { return 0; };
-    expandSome<kAxes, kCount>(
-        x, lines, nothing, [&, hash](int, int n, int i, PointValue& low, PointValue& high) HWY_ATTR {
+    expandSome<kAxes, kCount, kSlices>(
+        x, side, nothing, [&, hash](int, int n, int i, const auto& put) HWY_ATTR {
           const auto hashOf = [&](const std::uint32_t* from) HWY_ATTR {
             return [&, from](int p) HWY_ATTR {
               return hn::Mul(hn::LoadU(du, from + n * hash.line + p * hash.plane + i), row[p][n]);
             };
           };
-          low = points(hashOf(hash.low));
-          high = points(hashOf(hash.high));
+          PointValue value[kSlices];
+          Half half[kSlices];
+          points(hashOf(hash.low), value);
+          for (int s = 0; s < kSlices; ++s) half[s] = put.low(value[s]);
+          points(hashOf(hash.high), value);
+          for (int s = 0; s < kSlices; ++s) put.high(s, half[s], value[s]);
         });
   }
 
   // Lines whose points are evaluated first, each once.
-  template <int kAxes, int kCount>
-  HWY_INLINE void gather(const Points<kAxes>& points, int t, const LineRef* lines,
-                         const std::uint32_t* rows) const {
+  template <int kCount, int kAxes, int kSlices, int kShift>
+  HWY_INLINE void gather(const Points<kAxes, kSlices, kShift>& points, int t, const Side& side) const {
     const Floats d;
     const Words du;
     const RowPlaces& x = tables_.term[t].x;
@@ -231,14 +300,18 @@ class GradientRows {
     const std::uint32_t* HWY_RESTRICT hash = x.pointHash + cell[0];
     const int count = cell[width_ - 1] - cell[0] + 2;
     for (int n = 0; n < kCount; ++n) {
-      float* HWY_RESTRICT to = points_ + std::ptrdiff_t{n} * kPointValues * kPointStride;
+      float* HWY_RESTRICT to = points_ + std::ptrdiff_t{n} * kSlices * kPointValues * kPointStride;
       for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
         const VU h = hn::LoadU(du, hash + i);
-        const PointValue v =
-            points([&](int p) HWY_ATTR { return hn::Mul(h, hn::Set(du, rows[p * padded(kMostLines) + n])); });
-        if constexpr (kAxes > 2) hn::Store(v.level, d, to + i);
-        hn::Store(v.slope, d, to + kPointStride + i);
-        hn::Store(v.b, d, to + 2 * kPointStride + i);
+        PointValue v[kSlices];
+        points([&](int p) HWY_ATTR { return hn::Mul(h, hn::Set(du, side.rows[p * padded(kMostLines) + n])); },
+               v);
+        for (int s = 0; s < kSlices; ++s) {
+          float* HWY_RESTRICT const at = to + std::ptrdiff_t{s} * kPointValues * kPointStride + i;
+          if constexpr (kAxes > 2) hn::Store(v[s].level, d, at);
+          hn::Store(v[s].slope, d, at + kPointStride);
+          hn::Store(v[s].b, d, at + 2 * kPointStride);
+        }
       }
     }
     const hn::RebindToSigned<Floats> di;
@@ -255,27 +328,57 @@ class GradientRows {
       return Places{hn::IndicesFromVec(d, at), hn::IndicesFromVec(d, hn::Add(at, hn::Set(di, 1))),
                     cell[i] - begin};
     };
-    const auto pointsOf = [=](const Places& places, int n, int, PointValue& low, PointValue& high) HWY_ATTR {
-      const auto spread = [&](int value, VF& atLow, VF& atHigh) HWY_ATTR {
-        VF v = hn::LoadU(d, from + (std::ptrdiff_t{n} * kPointValues + value) * kPointStride + places.base);
-        keep(v);
-        atLow = hn::TableLookupLanes(v, places.below);
-        atHigh = hn::TableLookupLanes(v, places.above);
-      };
-      if constexpr (kAxes > 2) spread(0, low.level, high.level);
-      spread(1, low.slope, high.slope);
-      spread(2, low.b, high.b);
+    const auto pointsOf = [=](const Places& places, int n, int, const auto& put) HWY_ATTR {
+      for (int s = 0; s < kSlices; ++s) {
+        PointValue low, high;
+        const auto spread = [&](int value, VF& atLow, VF& atHigh) HWY_ATTR {
+          const std::ptrdiff_t which = (std::ptrdiff_t{n} * kSlices + s) * kPointValues + value;
+          VF v = hn::LoadU(d, from + which * kPointStride + places.base);
+          keep(v);
+          atLow = hn::TableLookupLanes(v, places.below);
+          atHigh = hn::TableLookupLanes(v, places.above);
+        };
+        if constexpr (kAxes > 2) spread(0, low.level, high.level);
+        spread(1, low.slope, high.slope);
+        spread(2, low.b, high.b);
+        put.high(s, put.low(low), high);
+      }
     };
-    expandSome<kAxes, kCount>(x, lines, placesOf, pointsOf);
+    expandSome<kAxes, kCount, kSlices>(x, side, placesOf, pointsOf);
   }
 
-  // pointsOf(placesOf(i), n, i, low, high) gives line n's points on either side of the samples from i on.
-  template <int kAxes, int kCount, class PlacesOf, class PointsOf>
-  HWY_INLINE void expandSome(const RowPlaces& x, const LineRef* lines, const PlacesOf& placesOf,
+  // A and B of the points below samples, and of both when those above are added.
+  struct Half {
+    VF a, b;
+  };
+  template <int kAxes>
+  struct Put {
+    VF lowWeight, lowReach, highWeight, highReach;
+    std::ptrdiff_t at;
+    float* const* out;  // by slice
+
+    HWY_INLINE Half low(const PointValue& v) const {
+      VF a = hn::Mul(lowReach, v.slope);
+      if constexpr (kAxes > 2) a = hn::MulAdd(lowWeight, v.level, a);
+      return {a, hn::Mul(lowWeight, v.b)};
+    }
+    HWY_INLINE void high(int slice, const Half& half, const PointValue& v) const {
+      const Floats d;
+      VF a = hn::MulAdd(highReach, v.slope, half.a);
+      if constexpr (kAxes > 2) a = hn::MulAdd(highWeight, v.level, a);
+      hn::Store(a, d, out[slice] + at);
+      hn::Store(hn::MulAdd(highWeight, v.b, half.b), d, out[slice] + at + kPad);
+    }
+  };
+
+  // pointsOf(placesOf(i), n, i, put) puts line n's points on either side of the samples from i on, by slice.
+  template <int kAxes, int kCount, int kSlices, class PlacesOf, class PointsOf>
+  HWY_INLINE void expandSome(const RowPlaces& x, const Side& side, const PlacesOf& placesOf,
                              const PointsOf& pointsOf) const {
     const Floats d;
-    float* HWY_RESTRICT out[kCount];
-    for (int n = 0; n < kCount; ++n) out[n] = lines_ + lines[n].offset;
+    float* out[kCount][kSlices];
+    for (int n = 0; n < kCount; ++n)
+      for (int s = 0; s < kSlices; ++s) out[n][s] = side.to + side.lines[n].offset + s * sliceStride_;
     // What is stored might, for all that the compiler knows, be these.
     const float* HWY_RESTRICT const lowWeights = x.lowWeight + x_;
     const float* HWY_RESTRICT const highWeights = x.highWeight + x_;
@@ -286,16 +389,8 @@ class GradientRows {
       const auto lowWeight = hn::LoadU(d, lowWeights + i), highWeight = hn::LoadU(d, highWeights + i);
       const auto lowReach = hn::LoadU(d, lowReaches + i), highReach = hn::LoadU(d, highReaches + i);
       const auto places = placesOf(i);
-      for (int n = 0; n < kCount; ++n) {
-        PointValue low, high;
-        pointsOf(places, n, i, low, high);
-        VF a = hn::Mul(lowReach, low.slope);
-        if constexpr (kAxes > 2) a = hn::MulAdd(lowWeight, low.level, a);
-        a = hn::MulAdd(highReach, high.slope, a);
-        if constexpr (kAxes > 2) a = hn::MulAdd(highWeight, high.level, a);
-        hn::Store(a, d, out[n] + inLine(i));
-        hn::Store(hn::MulAdd(highWeight, high.b, hn::Mul(lowWeight, low.b)), d, out[n] + inLine(i) + kPad);
-      }
+      for (int n = 0; n < kCount; ++n)
+        pointsOf(places, n, i, Put<kAxes>{lowWeight, lowReach, highWeight, highReach, inLine(i), out[n]});
     }
   }
 
@@ -338,6 +433,8 @@ class GradientRows {
     const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
     const float* HWY_RESTRICT const line0[2] = {lines + first.lines[0], lines + first.lines[1]};
     const float* HWY_RESTRICT const line1[2] = {lines + second.lines[0], lines + second.lines[1]};
+    // Unrolled by GCC, it would not fit the registers.
+#pragma GCC unroll 1
     for (int part = 0; part < 2; ++part) {  // A, then B
       const VF low0 = hn::Set(d, first.weights[part]), high0 = hn::Set(d, first.weights[2 + part]);
       const VF low1 = hn::Set(d, second.weights[part]), high1 = hn::Set(d, second.weights[2 + part]);
@@ -365,13 +462,22 @@ class GradientRows {
       for (auto& v : row) v = value;
   }
 
+  // What a sum is made of: terms, and rows between lines.
+  struct SumOf {
+    int first, terms, rows;
+    const float* lines;
+    const RowPlace* places;  // of the first term in the first row
+  };
+
   // sink(row, i, v) takes the samples from i on of each row.
   template <Fractal kFractal, class Sink>
-  HWY_INLINE void sum(int first, int terms, const RowPlace* places, int rows, const Sink& sink) const {
+  HWY_INLINE void sum(const SumOf& of, const Sink& sink) const {
     const Floats d;
+    const int first = of.first, terms = of.terms, rows = of.rows;
+    const RowPlace* places = of.places;
     const auto lanes = static_cast<int>(hn::Lanes(d));
     const int width = width_, stride = tables_.terms;
-    const float* HWY_RESTRICT const lines = lines_;
+    const float* HWY_RESTRICT const lines = of.lines;
     const auto bias = hn::Set(d, tables_.bias);
     for (int r = 0; r < rows; r += kPair, places += std::ptrdiff_t{kPair} * stride) {
       // A last row alone is its own partner.
@@ -410,14 +516,15 @@ class GradientRows {
 
   // The same of a single octave: its weights stay in registers.
   template <class Sink>
-  HWY_INLINE void sumOne(const RowPlace* places, int rows, const Sink& sink) const {
+  HWY_INLINE void sumOne(const SumOf& of, const Sink& sink) const {
     const Floats d;
+    const RowPlace* places = of.places;
     const auto lanes = static_cast<int>(hn::Lanes(d));
     const int width = width_, stride = tables_.terms;
     const auto bias = hn::Set(d, tables_.bias);
-    for (int r = 0; r < rows; ++r, places += stride) {
-      const float* HWY_RESTRICT const low = lines_ + places->lines[0];
-      const float* HWY_RESTRICT const high = lines_ + places->lines[1];
+    for (int r = 0; r < of.rows; ++r, places += stride) {
+      const float* HWY_RESTRICT const low = of.lines + places->lines[0];
+      const float* HWY_RESTRICT const high = of.lines + places->lines[1];
       const auto lowWeight = hn::Set(d, places->weights[0]), lowReach = hn::Set(d, places->weights[1]);
       const auto highWeight = hn::Set(d, places->weights[2]), highReach = hn::Set(d, places->weights[3]);
       for (int i = 0; i < width; i += kVectors * lanes) {
@@ -436,9 +543,12 @@ class GradientRows {
 
   const GradientTables& tables_;
   int x_, width_;
+  int slices_ = 1;
   bool fresh_ = true;                   // no lines are left
-  float* lines_;                        // the octaves' rings
-  Plane* planes_;                       // kMaxPlanes a term
+  float* lines_;                        // the octaves' rings, a slice after the other
+  std::ptrdiff_t sliceStride_;          // floats
+  Plane* planes_;                       // kMaxPlanes a slice, kMostSlices a term
+  SharedPlanes* shared_;                // by term
   float* points_;                       // of kSideBySide lines, each value of PointValue
   std::int32_t* below_;                 // by sample, a term after the other
   std::uint32_t* published_ = nullptr;  // hashes: of a line, a plane, the lower corners, then the upper ones
