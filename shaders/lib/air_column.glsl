@@ -41,6 +41,7 @@ const float kHalfMost = 65000.0;
 struct AirRay {
   vec3 dir;
   float groundM;
+  float glowM;                    // air beyond has none of the clouds' light: it is over them all
   float cosSun;
   FirstPhases phases;
   vec2 dither;
@@ -86,7 +87,8 @@ AirRay airRay(ivec2 column) {
     }
   }
 #endif
-  return AirRay(dir, groundM, cosSun, phases, dither);
+  vec2 tops = uBandCount == 0 ? vec2(1.0, -1.0) : sphereCrossings(uBands[uBandCount - 1].y, dir.z);
+  return AirRay(dir, groundM, tops.x <= tops.y ? max(tops.y, 0.0) : 0.0, cosSun, phases, dither);
 }
 
 // The share of the air's light in the sun that a segment has.
@@ -142,7 +144,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
   vec3 nearLit, nearThrough, farLit, farThrough, middleLit, middleThrough;
   aerialLit(ray.dir, fromM, nearLit, nearThrough);
   aerialLit(ray.dir, toM, farLit, farThrough);
-  float lit = litSegment(ray, fromM, toM);
+  float lit = litSegment(ray, fromM, toM), glow = clamp((ray.glowM - fromM) / max(toM - fromM, 1.0), 0.0, 1.0);
   if (state.weight > 0.0) {
     aerialLit(ray.dir, clamp(state.weightedDepth / state.weight, fromM, toM), middleLit, middleThrough);
   } else {
@@ -150,8 +152,8 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
     middleThrough = farThrough;
   }
   column.luminance += cloudsThroughAir(state.luminance, state.weight - bySheets, middleThrough);
-  column.luminance += before * max(airBetween(nearLit, nearThrough, middleLit, middleThrough, lit), 0.0);
-  column.luminance += state.transmittance * max(airBetween(middleLit, middleThrough, farLit, farThrough, lit), 0.0);
+  column.luminance += before * max(airBetween(nearLit, nearThrough, middleLit, middleThrough, lit, glow), 0.0);
+  column.luminance += state.transmittance * max(airBetween(middleLit, middleThrough, farLit, farThrough, lit, glow), 0.0);
   column.clouds = state.transmittance;
   return AirSlice(min(uScale * column.luminance, kHalfMost), column.clouds * farThrough);
 }

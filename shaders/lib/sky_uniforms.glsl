@@ -47,12 +47,12 @@ void aerialLit(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) 
 }
 
 // What it adds between two distances where the sun reaches a share of it: air in the shade of clouds is lit from all sides alike; in the sun,
-// it has the light of the clouds too.
-vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit) {
+// a share of it (glow) has the light of the clouds too.
+vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow) {
   vec3 scattered = nearThrough - farThrough;
-  return mix(scattered * uHazeLuminance, farLit - nearLit + scattered * uCloudGlow, lit);
+  return mix(scattered * uHazeLuminance, farLit - nearLit + scattered * (glow * uCloudGlow), lit);
 }
-vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit); }
+vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0); }
 
 // The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
