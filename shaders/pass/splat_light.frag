@@ -45,7 +45,10 @@ vec3 fromLight(SplatStack stack, vec3 lux, vec3 toLight, vec2 sky, SplatPlace pl
   vec2 along = splatBodyDepths(stack, uDepths, p);
   float shade = splatAhead(stack, uDepths, p);
   CloudDepths depths = CloudDepths(max(along.x - shade, 0.0), along.y, sky.x, sky.y);
-  return splatFromLight(lux, toLight, depths, shade, phaseOf(dot(place.dir, toLight)), place);
+  vec3 q = p - stack.centreM;
+  float facing = splatFacing(vec3(dot(q, stack.across), dot(q, stack.upward), dot(q, stack.away)),
+                             vec3(stack.halfM, stack.halfM, stack.halfDepthM), vec3(0.0, 0.0, -1.0));
+  return splatFromLight(lux, toLight, depths, facing, shade, phaseOf(dot(place.dir, toLight)), place);
 }
 
 void main() {

@@ -72,7 +72,7 @@ vec3 fromLight(mat3 axes, float stackNumber, vec3 lux, vec3 toLight, vec3 q, vec
   SplatStack stack = SplatStack(vec3(vPlace), axes[0], axes[1], axes[2], vShade.x, vShade.y, vec3(vShade.z + stackNumber * vTexel.y, vShade.w, vTexel.y));
   float shade = splatDepths(stack, uDepths, place.dir * place.distanceM).x;
   CloudDepths depths = CloudDepths(vMatter.z * towards, vMatter.z * away, sky.x, sky.y);
-  return splatFromLight(lux, toLight, depths, shade, phaseDroplet(dot(place.dir, toLight), uDroplets), place);
+  return splatFromLight(lux, toLight, depths, splatFacing(q, vec3(vShape), along), shade, phaseDroplet(dot(place.dir, toLight), uDroplets), place);
 }
 
 void main() {

@@ -211,7 +211,7 @@ TEST(SplatConservation, ABallSendsOutNoMoreThanItTakes) {
   };
   const glm::dvec3 light(state.lights[0].direction),
       across = glm::normalize(glm::cross(light, {0.0, 0.0, 1.0})), up = glm::cross(across, light);
-  for (const auto& [density, most] : {std::pair{1e-4, 1.02}, {1e-3, 1.05}, {0.01, 1.2}, {0.1, 1.8}}) {
+  for (const double density : {1e-4, 1e-3, 0.01, 0.1}) {
     const double taken = seen(-light, density).y;
     // Finer where the droplets' peak is, on the far side from the light.
     double sent = 0.0;
@@ -226,7 +226,7 @@ TEST(SplatConservation, ABallSendsOutNoMoreThanItTakes) {
             std::cos(middle) * light + std::sin(middle) * (std::cos(turn) * across + std::sin(turn) * up);
         sent += steradians * seen(dir, density).x;
       }
-    EXPECT_LT(sent / taken, most) << density;
+    EXPECT_LT(sent / taken, 1.02) << density;  // the sum over directions is within a hundredth
     EXPECT_GT(sent / taken, 0.9) << density;
   }
   EXPECT_TRUE(context.takeErrors().empty());
