@@ -42,7 +42,10 @@ class CellTiles {
   // The block's x, y and z are relative to the tables' first and multiples of the tiles' sizes.
   CellTiles(const CellTables& tables, const Block& block, Scratch& scratch) : tables_(tables), block_(block) {
     makePoints(scratch);
-    const std::size_t most = static_cast<std::size_t>(stride_) * count_[1] * count_[2] + kTileX;
+    // The points around a tile.
+    std::size_t most = 1;
+    for (int a = 0; a < 3; ++a) most *= static_cast<std::size_t>(mostCells(a) + 2 * reach_[a]);
+    most = (most + kTileX - 1) / kTileX * kTileX;
     for (NearPoints* points : {&around_, &near_})
       for (float*& p : points->place) p = scratch.take<float>(most + 2 * kLanes);
     squares_ = scratch.take<float>(most + kLanes);
@@ -97,6 +100,16 @@ class CellTiles {
   const CellPlaces& axis(int a) const { return tables_.axis[a]; }
   int first(int a) const { return a == 0 ? block_.x : a == 1 ? block_.y : block_.z; }
   int samples(int a) const { return a == 0 ? block_.width : a == 1 ? block_.rows : block_.slices; }
+
+  // Cells that a tile lies in at most.
+  int mostCells(int a) const {
+    if (a >= tables_.lattice->axes()) return 1;
+    const std::int32_t* cell = axis(a).cell + first(a);
+    int most = 0;
+    for (int i = 0, tile = tables_.tile[a]; i < samples(a); i += tile)
+      most = std::max(most, cell[i + tile - 1] - cell[i] + 1);
+    return most;
+  }
 
   // Places of the feature points in all cells of the block and kCellReach around, each within its cell.
   void makePoints(Scratch& scratch) {

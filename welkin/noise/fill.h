@@ -240,7 +240,7 @@ struct FillJob {
 // Fills job.out. Everything in the job has been checked.
 void fillGrid(FillJob& job);
 
-// One block of it by the point function, for processors without vectors and cells smaller than samples.
+// One block of it by the point function, for processors without vectors and cells much smaller than samples.
 void fillPointwise(const FillJob& job, const Block& block);
 
 // On the processor's best instruction set: weights and reaches of corners from places within cells, n of

@@ -40,24 +40,30 @@ Scratch::~Scratch() {
 }
 
 void Scratch::reset() {
-  if (blocks_.size() > 1) {  // one block that holds all that was taken
-    for (std::byte* b : blocks_) release(b);
-    blocks_.assign(1, allocate(total_));
-    capacity_ = total_;
-  }
+  const std::size_t all = total_;
   used_ = total_ = 0;
+  if (blocks_.size() <= 1) return;
+  // One block that holds all that was taken. Where there is no memory for it, none is left.
+  for (std::byte* b : blocks_) release(b);
+  blocks_.clear();
+  capacity_ = 0;
+  blocks_.push_back(allocate(all));
+  capacity_ = all;
 }
 
 void* Scratch::takeBytes(std::size_t bytes) {
   bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
-  total_ += bytes;
   if (blocks_.empty() || used_ + bytes > capacity_) {
-    capacity_ = std::max(bytes, std::size_t{1} << 16);
-    blocks_.push_back(allocate(capacity_));
+    // What fails here leaves all as it was.
+    const std::size_t capacity = std::max(bytes, std::size_t{1} << 16);
+    blocks_.reserve(blocks_.size() + 1);
+    blocks_.push_back(allocate(capacity));
+    capacity_ = capacity;
     used_ = 0;
   }
   void* p = blocks_.back() + used_;
   used_ += bytes;
+  total_ += bytes;
   return p;
 }
 
@@ -478,6 +484,29 @@ Block FillJob::tilesOf(const Block& b) const {
   return t;
 }
 
+namespace {
+
+// Cells that the finest octave has for a sample. It decides by the whole grid, so that boxes agree.
+double cellsOfSample(const FillJob& job) {
+  double most = 0.0;
+  for (const CellTerm& term : job.plan->cells) {
+    double cells = 1.0;
+    for (int a = 0; a < term.lattice.axes(); ++a) {
+      const double step = term.lattice.axis(a).frequency() * job.grid.spacing[a];
+      if (step * job.grid.size[a] > 1e9) return HUGE_VAL;  // more than tables count
+      cells *= std::max(step, 1.0);
+    }
+    most = std::max(most, cells);
+  }
+  return most;
+}
+
+// Tiles know all points of their block: of so many cells a sample, blocks are small; of so many, the point
+// function, which looks at some samples' own alone, is as fast and takes no memory.
+constexpr double kCrowded = 8.0, kPointwise = 512.0;
+
+}  // namespace
+
 void fillGrid(FillJob& job) {
   const NoiseParams& p = *job.params;
   const glm::ivec3 size = job.box.size;
@@ -497,7 +526,9 @@ void fillGrid(FillJob& job) {
   job.stream = bytes * size.x * size.y * size.z > kStreamBytes;
   const ScratchLoan memory;
   memory->reset();
-  makeTables(job, *memory);
+  const double crowd = cellsOfSample(job);
+  const bool pointwise = crowd > kPointwise;
+  if (!pointwise) makeTables(job, *memory);
 
   // Blocks: of gradients as tall as leaves every thread several, so that rows share what lies between rows of
   // lattice points; of cells small enough for a core's own cache.
@@ -506,6 +537,7 @@ void fillGrid(FillJob& job) {
   if (cells) {
     rows = p.dimensions == 3 ? 16 : 64;
     slices = p.kind == Kind::kCellular ? 16 : 8;
+    if (crowd > kCrowded) rows = slices = kTileMost;
   } else if (size.z < 4 * slices * threadCount()) {
     rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
   }
@@ -528,7 +560,10 @@ void fillGrid(FillJob& job) {
       clip(x, strip, leadX, size.x, b.x, b.width);
       clip(y, rows, leadY, size.y, b.y, b.rows);
       clip(z, slices, leadZ, size.z, b.z, b.slices);
-      fillBlock(job, b, *scratch);
+      if (pointwise)
+        fillPointwise(job, b);
+      else
+        fillBlock(job, b, *scratch);
     }
   };
   parallelFor(static_cast<std::size_t>(across) * down * deep, 1, std::ref(body));

@@ -29,19 +29,19 @@ Span Axis::at(double p, double shiftCells) const {
   const double sumError = (p - (sum - back)) + (offset_ - back);
   const double product = sum * frequency_;
   const double error = std::fma(sum, frequency_, -product) + sumError * frequency_;
-  double cell = std::floor(product);
+  const double cell = std::floor(product);
   double inside = ((product - cell) + error) + shiftCells;
+  const double period = period_ == 0 ? 4294967296.0 : static_cast<double>(period_);
+  auto low = static_cast<std::uint32_t>(cell - period * std::floor(cell / period));
   if (inside < 0.0 || inside >= 1.0) {
-    const double step = std::floor(inside);
-    cell += step;
+    double step = std::floor(inside);
     inside -= step;
     if (inside >= 1.0) {  // a negative number too small to be taken from one
-      cell += 1.0;
+      step += 1.0;
       inside = 0.0;
     }
+    low = moved(low, static_cast<int>(step));  // far away a double holds no single cells
   }
-  const double period = period_ == 0 ? 4294967296.0 : static_cast<double>(period_);
-  const auto low = static_cast<std::uint32_t>(cell - period * std::floor(cell / period));
   return {low, moved(low, 1), inside};
 }
 

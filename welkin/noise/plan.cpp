@@ -124,7 +124,9 @@ Spread spreadOf(const NoiseParams& p) {
       return {0.0, GradientLattice::deviation(axes), -bound, bound};
     }
     case Kind::kValue: {
-      const Value noise(Builder{p}.valueSettings(0));
+      ValueSettings settings = Builder{p}.valueSettings(0);
+      settings.period = glm::ivec3(0);  // over the infinite lattice
+      const Value noise(settings);
       const double bound = noise.bound(dimensions);
       if (bent) return spreadOfBent(noise, p.fractal, dimensions == 2, bound);
       return {0.0, noise.deviation(dimensions), -bound, bound};

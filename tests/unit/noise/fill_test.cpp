@@ -16,14 +16,17 @@
 #include <vector>
 
 #include "welkin/core/parallel.h"
+#include "welkin/noise/fill.h"
 #include "welkin/noise/noise.h"
 
 namespace {
 
 std::atomic<long> gAllocations{0};
+std::atomic<std::size_t> gMost{std::numeric_limits<std::size_t>::max()};  // bytes; more are refused
 
 void* counted(std::size_t size, std::size_t alignment) {
   ++gAllocations;
+  if (size > gMost) throw std::bad_alloc();
   void* p = alignment <= alignof(std::max_align_t)
                 ? std::malloc(size)
                 : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -316,6 +319,66 @@ TEST(Fill, RoundsToEveryFormat) {
         EXPECT_LE(std::abs(half - v), std::ldexp(1.0, std::max(exponent, 1) - 15 - 11));
       }
     }
+}
+
+// Many cells between samples: the memory for them does not grow as their number, and boxes agree.
+TEST(Fill, OfCellsSmallerThanSamplesTakesLittleMemory) {
+  for (const Kind kind : {Kind::kCellular, Kind::kPerlinWorley})
+    for (const int dimensions : {2, 3})
+      for (const double step : {3.3, 7.7, 500.0, 1e8}) {
+        NoiseParams p{.kind = kind, .dimensions = dimensions, .tile = false, .octaves = 1};
+        p.frequency = glm::dvec3(0.125, 1.0, 1.0);
+        p.frequency *= kind == Kind::kPerlinWorley ? 0.125 : 1.0;  // its finest octave
+        const Noise noise(p);
+        const Grid grid{{40, 20, dimensions == 3 ? 10 : 1}, glm::dvec3(step)};
+        const Box box{{3, 9, dimensions == 3 ? 1 : 0}, {30, 11, dimensions == 3 ? 9 : 1}};
+        const auto channels = static_cast<std::size_t>(noise.channels());
+        std::vector<float> whole(channels * 40 * 20 * grid.size.z), part(channels * 30 * 11 * box.size.z);
+        gMost = std::size_t{32} << 20;
+        noise.fill(grid, std::span(whole));
+        noise.fill(grid, box, std::span(part));
+        gMost = std::numeric_limits<std::size_t>::max();
+        std::size_t at = 0;
+        for (int z = 0; z < box.size.z; ++z)
+          for (int y = 0; y < box.size.y; ++y)
+            for (std::size_t x = 0; x < channels * 30; ++x, ++at) {
+              const glm::ivec3 of = box.first + glm::ivec3(0, y, z);
+              ASSERT_EQ(part[at], whole[channels * ((of.z * 20 + of.y) * 40 + 3) + x])
+                  << "kind " << static_cast<int>(kind) << " dimensions " << dimensions << " step " << step;
+            }
+        for (int x = 0; x < 40; ++x)
+          for (std::size_t c = 0; c < channels; ++c)
+            EXPECT_NEAR(whole[channels * x + c],
+                        noise.sample(step * glm::dvec3(x + 0.5, 0.5, 0.5), static_cast<int>(c)), 4e-6)
+                << "kind " << static_cast<int>(kind) << " dimensions " << dimensions << " step " << step;
+      }
+}
+
+// Memory that is lent again after some was refused is what it says it is.
+TEST(Fill, ScratchSurvivesRefusedMemory) {
+  constexpr std::size_t kBytes = 100000;
+  Scratch scratch;
+  const auto use = [&] {
+    std::memset(scratch.take<std::byte>(kBytes), 1, kBytes);
+    std::memset(scratch.take<std::byte>(3 * kBytes), 2, 3 * kBytes);
+  };
+  const auto refuse = [&](std::size_t most, const auto& what) {
+    gMost = most;
+    EXPECT_THROW(what(), std::bad_alloc);
+    gMost = std::numeric_limits<std::size_t>::max();
+  };
+  std::memset(scratch.take<std::byte>(kBytes), 0, kBytes);
+  refuse(kBytes, [&] { scratch.take<std::byte>(50 * kBytes); });
+  const long before = gAllocations;
+  scratch.take<std::byte>(2 * kBytes);
+  const long after = gAllocations;
+  EXPECT_GT(after, before) << "the block before has no room";
+  refuse(2 * kBytes, [&] { scratch.reset(); });  // the blocks become one
+  use();
+  gMost = 5 * kBytes;
+  EXPECT_NO_THROW(scratch.reset());
+  gMost = std::numeric_limits<std::size_t>::max();
+  use();
 }
 
 TEST(Fill, AgainAllocatesNothing) {

@@ -8,6 +8,7 @@
 
 #include "welkin/core/random.h"
 #include "welkin/noise/gradient.h"
+#include "welkin/noise/lattice.h"
 #include "welkin/noise/noise.h"
 
 namespace welkin::noise {
@@ -48,6 +49,18 @@ TEST(Perlin, IsTheSameFarFromTheOrigin) {
   const Noise there(p);
   for (const glm::dvec3 q : {glm::dvec3(0.25, 1.5, 3.75), glm::dvec3(-7.125, 0.5, 100.0)})
     EXPECT_NEAR(there.sample(q), here.sample(q + p.offset), 1e-12);
+}
+
+// Beyond 2^53 cells, where doubles leave cells out.
+TEST(Axis, CountsEveryCellFarAway) {
+  const Axis axis(1, 8192.0, 1e15, 0.0);
+  for (int i = -500; i < 500; ++i) {
+    const std::int64_t cell = std::int64_t{1000000000000000} * 8192 + (i < 0 ? (i - 3) / 4 : i / 4);
+    const Span s = axis.at(i / 32768.0);
+    EXPECT_EQ(s.low, static_cast<std::uint32_t>(cell)) << i;
+    EXPECT_EQ(s.high, static_cast<std::uint32_t>(cell + 1)) << i;
+    EXPECT_EQ(s.inside, ((i % 4) + 4) % 4 / 4.0) << i;
+  }
 }
 
 TEST(Perlin, HasTheKnownSpread) {

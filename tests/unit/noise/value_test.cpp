@@ -242,6 +242,16 @@ TEST(ValueSum, GridAgreesWithThePointFunctionAndTiles) {
     }
 }
 
+// Its measure is the infinite lattice, so that a tile of one cell is as any other.
+TEST(ValueSum, BentHasTheSpreadOfTheInfiniteLattice) {
+  for (const Fractal fractal : {Fractal::kBillow, Fractal::kRidged}) {
+    NoiseParams p{.kind = Kind::kValue, .frequency = {1, 1, 1}, .octaves = 1, .fractal = fractal};
+    p.normalisation = Normalisation::kUnitVariance;
+    p.smooth = false;
+    for (p.seed = 0; p.seed < 5; ++p.seed) EXPECT_LT(std::abs(Noise(p).sample({0.3, 0.4, 0.5})), 6.0);
+  }
+}
+
 TEST(ValueSum, HasSlopesAndNormalisations) {
   NoiseParams p = sumOfThree(3, Fractal::kFbm);
   const Noise noise(p);
