@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/testing/engine_depth.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/colour.h"
@@ -131,6 +132,38 @@ TEST_F(SplatTest, HidesWhatTheFieldHides) {
         EXPECT_NEAR(picture.at(x, y, 3), hidden, 2e-3) << "cloud " << c << " at " << x << ", " << y;
       }
     EXPECT_GT(most, 0.3) << "cloud " << c;
+  }
+}
+
+// Softly: what an engine has drawn in a ball hides what is behind it of the ball, along each ray, and no
+// more.
+TEST_F(SplatTest, WhatAnEngineHasDrawnCutsBalls) {
+  constexpr double kNearM = 10.0, kFarM = 1e4;
+  const std::vector<field::Metaball> balls{{{30.0, kDistanceM, -20.0}, 250.0, 0.006}};
+  const field::MetaballField field(balls);
+  std::vector<field::Metaball> inPlace = balls;
+  inPlace[0].centreM.z += state.scene.camera.eyeM;
+  const SplatCloud cloud{.balls = inPlace};
+  for (const bool reversed : {false, true}) {
+    glm::dmat4 m(0.0);
+    m[2][2] = reversed ? kNearM / (kFarM - kNearM) : -(kFarM + kNearM) / (kFarM - kNearM);
+    m[3][2] = (reversed ? 1.0 : -2.0) * kFarM * kNearM / (kFarM - kNearM);
+    for (const double wallM : {500.0, 850.0, 1000.0, 1150.0, 3000.0}) {
+      const double ndc = -m[2][2] + m[3][2] / wallM;
+      Image<float> depth(kSide, kSide, 1);
+      std::ranges::fill(depth.data, static_cast<float>(reversed ? ndc : 0.5 + 0.5 * ndc));
+      const EngineDepthTexture engine(depth);
+      target.clear();
+      pass.draw({&cloud, 1}, view, tables,
+                {.target = target, .depth = {engine.id(), reversed}, .projection = m});
+      const Image<float> picture = target.readPicture();
+      for (int y = 1; y < kSide; y += 4)
+        for (int x = 1; x < kSide; x += 4) {
+          const glm::dvec3 ray = rayOf(x, y);
+          ASSERT_NEAR(picture.at(x, y, 3), 1.0 - std::exp(-depthAlong(field, ray, wallM / ray.y)), 3e-3)
+              << wallM << (reversed ? " reversed at " : " at ") << x << ", " << y;
+        }
+    }
   }
 }
 
