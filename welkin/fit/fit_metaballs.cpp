@@ -27,10 +27,13 @@ constexpr double kManSpread = 2.0, kFirstSpread = 2.2;
 constexpr double kSpreads[] = {1.6, 2.0, 2.4, 2.8};
 constexpr double kMovedFirst = 0.2,
                  kMovedLess = 0.6;  // share of the balls moved, and its factor when that failed
-constexpr double kExact = 1e-4;     // relative error that needs no more rounds
-constexpr double kNearlyExact = 0.15;
+constexpr double kExact = 5e-4;     // relative error that needs no more rounds
+constexpr double kNearlyExact = 0.2, kClose = 0.05;
+constexpr double kWorthwhile = 0.25;  // of |r|^2, what kBallsMore have to leave at most
+constexpr std::size_t kBallsMore = 7;
+constexpr int kDetourRounds = 6, kDetourSteps = 25, kCloseInnerSteps = 100;
+constexpr double kCloseInnerTolerance = 0.003;
 constexpr std::size_t kFewBalls = 64;
-constexpr int kStarts = 5, kLastRounds = 20;
 constexpr std::size_t kSingleMoves = 2;
 constexpr int kFirstSteps = 20, kRoundSteps = 10, kFewRoundSteps = 15, kFinerSteps = 8, kLastSteps = 60;
 
@@ -80,7 +83,7 @@ class LevelFit {
     refineOn(depth, kFirstSteps, 1e-4);
     stepDone(1.0);
     moveAbout(depth, rounds);
-    if (fresh && depth == 0) startAgain(depth, rounds);
+    if (fresh && depth == 0) findAll(depth);
     while (depth > 0) {
       refineOn(--depth, kFinerSteps, 1e-4);
       stepDone(2.0);
@@ -150,27 +153,25 @@ class LevelFit {
     relative_ = std::sqrt(squares_ / data.squares);
   }
 
-  // So few balls come so near that the map may be made of them: worth looking for from other clusters, too.
-  void startAgain(std::size_t depth, int rounds) {
+  // So few balls come so near that the map may be made of them: worth going round minima, as long as some
+  // balls more come much nearer. Near the truth overlapping balls want steps that are exact.
+  void findAll(std::size_t depth) {
     if (count_ > kFewBalls || relative_ > kNearlyExact) return;
-    const int starts = static_cast<int>(std::lround(params_.effort * kStarts));
-    for (int i = 1; i <= starts && relative_ > kExact && !control_.late(); ++i) {
-      const std::vector<GridBall> best = balls_;
-      const double squares = squares_, relative = relative_;
-      std::vector<GridBall> begun;
-      try {
-        begin(pyramid_[depth], begun, static_cast<std::uint64_t>(i));
-        balls_ = std::move(begun);
-        squares_ = std::numeric_limits<double>::max();
-        refineOn(depth, kFirstSteps, 1e-4);
-        moveAbout(depth, rounds);
-      } catch (...) {
-        if (squares < squares_) balls_ = best;
-        throw;
-      }
-      if (squares < squares_) balls_ = best, squares_ = squares, relative_ = relative;
+    const DensityGrid& data = pyramid_[depth];
+    RefineParams p = refineParams(depth);
+    p.steps = kDetourSteps, p.tolerance = 1e-4;
+    const int rounds = static_cast<int>(std::lround(params_.effort * kDetourRounds));
+    for (int round = 0; round < rounds && relative_ > kExact && !control_.late(); ++round) {
+      const bool close = relative_ < kClose;
+      if (close) p.innerSteps = kCloseInnerSteps, p.innerTolerance = kCloseInnerTolerance;
+      std::vector<GridBall> tried = balls_;
+      const double squares = goRound(
+          data, tried, {kBallsMore, static_cast<std::size_t>(round), kWorthwhile * squares_}, p, control_);
+      if (squares < squares_)
+        squares_ = squares, relative_ = std::sqrt(squares / data.squares), balls_ = std::move(tried);
+      else if (!close)
+        return;
     }
-    moveAbout(depth, static_cast<int>(std::lround(params_.effort * kLastRounds)));
   }
 
   // Few balls leave threads without work: then several ways to move are tried at once.

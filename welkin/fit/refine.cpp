@@ -11,9 +11,8 @@ namespace {
 
 constexpr int kTries = 8;  // of larger lambdas, before the minimum is taken for reached
 constexpr double kFirstLambda = 1e-2, kLeastLambda = 1e-6;
-constexpr double kInnerTolerance = 0.05;  // of the preconditioned residual
-constexpr double kLeastKept = 0.1;        // of a weight, in one step
-constexpr double kMostGrowth = 0.7;       // of ln R, in one step
+constexpr double kLeastKept = 0.1;   // of a weight, in one step
+constexpr double kMostGrowth = 0.7;  // of ln R, in one step
 
 using Block = Eigen::Matrix<double, 5, 5>;
 using Five = Eigen::Matrix<double, 5, 1>;
@@ -65,7 +64,7 @@ class Step {
     precondition(left, z);
     Vector p = z;
     double rz = left.dot(z);
-    const double enough = kInnerTolerance * kInnerTolerance * rz;
+    const double enough = params.innerTolerance * params.innerTolerance * rz;
     for (int i = 0; i < params.innerSteps && rz > enough; ++i) {
       control.check();
       jacobian_.times(spanOf(std::as_const(p)), voxels_);

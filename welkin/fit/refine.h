@@ -14,8 +14,9 @@ struct RefineParams {
   bool isSigned = false;
   double leastRadius = 1.0, greatestRadius = 1e9;
   int steps = 40;
-  int innerSteps = 25;      // of conjugate gradients, for one step
-  double tolerance = 1e-5;  // ends when a step takes off less than this share of |r|^2
+  int innerSteps = 25;           // of conjugate gradients, for one step
+  double innerTolerance = 0.05;  // of their preconditioned residual
+  double tolerance = 1e-5;       // ends when a step takes off less than this share of |r|^2
 };
 
 struct FitControl {

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "welkin/core/parallel.h"
@@ -131,36 +132,65 @@ class Placer {
   std::vector<Candidate> best_;
 };
 
-}  // namespace
-
-std::vector<GridBall> relocated(const DensityGrid& data, const std::vector<GridBall>& balls, const Move& move,
-                                const RefineParams& params, const FitControl& control) {
-  control.check();
+// All but those that would be missed least, but for the first so many of them.
+std::vector<GridBall> without(const DensityGrid& data, const std::vector<GridBall>& balls, std::size_t count,
+                              std::size_t spared) {
   const std::vector<double> worth = worthOf(data, balls);
   std::vector<std::size_t> order(balls.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return worth[a] != worth[b] ? worth[a] < worth[b] : a < b; });
   std::vector<bool> taken(balls.size(), false);
-  for (std::size_t i = move.spared; i < std::min(move.spared + move.count, order.size()); ++i)
-    taken[order[i]] = true;
+  for (std::size_t i = spared; i < std::min(spared + count, order.size()); ++i) taken[order[i]] = true;
   std::vector<GridBall> kept;
-  double radii = 0.0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    radii += balls[i].radius;
+  for (std::size_t i = 0; i < balls.size(); ++i)
     if (!taken[i]) kept.push_back(balls[i]);
-  }
+  return kept;
+}
+
+double meanRadius(const std::vector<GridBall>& balls) {
+  double radii = 0.0;
+  for (const GridBall& b : balls) radii += b.radius;
+  return radii / static_cast<double>(balls.size());
+}
+
+// Fewer if nothing is left to be fitted.
+void placeUpTo(std::size_t count, double typicalRadius, std::size_t passed, const DensityGrid& data,
+               std::vector<GridBall>& balls, const RefineParams& params, const FitControl& control) {
   std::vector<float> r;
-  residual(data, kept, BallLists(data.grid, kept), r);
-  Placer placer(data, r, radii / static_cast<double>(balls.size()), params);
-  for (std::size_t i = 0; i < move.passed; ++i) placer.passOver();
-  while (kept.size() < balls.size()) {
+  residual(data, balls, BallLists(data.grid, balls), r);
+  Placer placer(data, r, typicalRadius, params);
+  for (std::size_t i = 0; i < passed; ++i) placer.passOver();
+  while (balls.size() < count) {
     control.check();
     GridBall ball;
     if (!placer.next(ball)) break;
-    kept.push_back(ball);
+    balls.push_back(ball);
   }
+}
+
+}  // namespace
+
+std::vector<GridBall> relocated(const DensityGrid& data, const std::vector<GridBall>& balls, const Move& move,
+                                const RefineParams& params, const FitControl& control) {
+  control.check();
+  std::vector<GridBall> kept = without(data, balls, move.count, move.spared);
+  placeUpTo(balls.size(), meanRadius(balls), move.passed, data, kept, params, control);
   return kept;
+}
+
+double goRound(const DensityGrid& data, std::vector<GridBall>& balls, const Detour& detour,
+               const RefineParams& params, const FitControl& control) {
+  const std::size_t count = balls.size();
+  placeUpTo(count + detour.more, meanRadius(balls), detour.passed, data, balls, params, control);
+  double squares = refine(data, balls, params, control);
+  if (squares > detour.enough) return std::numeric_limits<double>::infinity();
+  while (balls.size() > count) {
+    control.check();
+    balls = without(data, balls, 1, 0);
+    squares = refine(data, balls, params, control);
+  }
+  return squares;
 }
 
 }  // namespace welkin::fit

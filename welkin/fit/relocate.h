@@ -21,4 +21,16 @@ struct Move {
 std::vector<GridBall> relocated(const DensityGrid& data, const std::vector<GridBall>& balls, const Move& move,
                                 const RefineParams& params, const FitControl& control);
 
+// The way round a minimum that no move leads out of, such as one ball over two that belong there with a third
+// that mends it elsewhere: `more` balls than there are, refined, and then those that would be missed least
+// taken away again, one after another and refined each time. Given up where even more balls leave |r|^2 above
+// `enough`: then it returns infinity, with balls of no use. Otherwise |r|^2, as refine().
+struct Detour {
+  std::size_t more = 1;
+  std::size_t passed = 0;  // as in Move
+  double enough = 0.0;
+};
+double goRound(const DensityGrid& data, std::vector<GridBall>& balls, const Detour& detour,
+               const RefineParams& params, const FitControl& control);
+
 }  // namespace welkin::fit

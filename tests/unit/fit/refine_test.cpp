@@ -164,6 +164,26 @@ TEST(Relocate, FindsWhatIsMissing) {
   EXPECT_TRUE(found);
 }
 
+// One ball over two that overlap, and two over one: refining stays there, and a detour leads out.
+TEST(Relocate, GoesRoundAMinimum) {
+  const std::vector<field::Metaball> truth = {
+      {{100, 100, 100}, 60, 1}, {{150, 110, 100}, 55, 0.8}, {{250, 220, 140}, 60, 1}};
+  const field::VoxelFrame frame{32, 32, 24, glm::dvec3(10), glm::dvec3(0)};
+  const DensityGrid data = densityGrid(field::rasterise(truth, frame), frame);
+  const RefineParams params{.leastRadius = 10, .greatestRadius = 500};
+  std::vector<GridBall> balls = {
+      {{125, 105, 100}, 75, 1}, {{245, 215, 140}, 60, 0.5}, {{255, 225, 140}, 60, 0.5}};
+  const double there = refine(data, balls, params, kFree);
+  EXPECT_GT(std::sqrt(there / data.squares), 0.1);
+  const std::vector<GridBall> from = balls;
+  const double squares = goRound(data, balls, {.more = 2, .enough = 0.25 * there}, params, kFree);
+  EXPECT_EQ(balls.size(), 3U);
+  EXPECT_LT(std::sqrt(squares / data.squares), 1e-3);
+  // Not for what no number of balls could do.
+  balls = from;
+  EXPECT_TRUE(std::isinf(goRound(data, balls, {.more = 2, .enough = 0.0}, params, kFree)));
+}
+
 TEST(DensityGrid, CoarserKeepsTheMassAndThePlace) {
   const DensityGrid fine = someMap(13, 8, 1);
   const DensityGrid coarse = coarser(fine);
