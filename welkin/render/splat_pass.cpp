@@ -7,7 +7,6 @@
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
-#include <numeric>
 
 #include "welkin/render/programs.h"
 #include "welkin/render/view_cone.h"
@@ -63,9 +62,6 @@ constexpr int kTilesWidthPx = 1024;
 constexpr std::size_t kValuesInBall = 230;
 // Of what shades a picture.
 constexpr std::size_t kValuesInPicture = 600;
-
-// A sort that has moved so many places for each ball had better begin anew.
-constexpr std::size_t kMostMoves = 24;
 
 // What `add` finds of a cloud's balls: of the two levels that fade into one another, each by itself, as `mix`
 // puts them together; nothing where there are no balls.
@@ -385,35 +381,14 @@ void SplatPass::addPieces(std::span<const SplatCloud> clouds, const glm::dvec3& 
         {pictures[i].centreM, pictures[i].radiusM, 0.0f, kPicture | static_cast<std::uint32_t>(i)});
 }
 
-// Insertion from the last frame's order: next to nothing where little has moved. The order is total, by
-// distance and then by number, so that it is the same however it was found. A ball's distance is that of a
-// place in its front half, which is what is seen of it; a picture's, that of the cloud's front, before its
-// balls.
+// A ball's distance is that of a place in its front half, which is what is seen of it; a picture's, that of
+// the cloud's front, before its balls.
 void SplatPass::sort() {
   distances_.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i)
     distances_[i] =
         glm::length(pieces_[i].centreM) - (pieces_[i].block & kPicture ? 1.0f : 0.5f) * pieces_[i].radiusM;
-  const auto before = [this](std::uint32_t a, std::uint32_t b) {
-    return distances_[a] != distances_[b] ? distances_[a] > distances_[b] : a < b;
-  };
-  if (order_.size() != pieces_.size()) {
-    order_.resize(pieces_.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::sort(order_.begin(), order_.end(), before);
-    return;
-  }
-  std::size_t moves = 0;
-  for (std::size_t i = 1; i < order_.size(); ++i) {
-    const std::uint32_t own = order_[i];
-    std::size_t to = i;
-    for (; to > 0 && before(own, order_[to - 1]); --to, ++moves) order_[to] = order_[to - 1];
-    order_[to] = own;
-    if (moves > kMostMoves * order_.size()) {
-      std::sort(order_.begin(), order_.end(), before);
-      return;
-    }
-  }
+  order_.sort(distances_);
 }
 
 // A tile for each ball, those of one size in rows of their own.
@@ -505,7 +480,7 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
   sort();
   findTiles(static_cast<double>(view.pixelRad));
   values_.clear();
-  for (const std::uint32_t i : order_) {
+  for (const std::uint32_t i : order_.order()) {
     const Piece& b = pieces_[i];
     if (b.block & kPicture) continue;
     const glm::vec3& tile = tileOf_[i];
@@ -548,7 +523,7 @@ void SplatPass::draw(std::span<const SplatCloud> clouds, const shading::ViewPart
   inTiles_.upload(values_);
   drawLight(view, tables);
   values_.clear();
-  for (const std::uint32_t i : order_) {
+  for (const std::uint32_t i : order_.order()) {
     const Piece& b = pieces_[i];
     if (b.block & kPicture) {
       const SplatPictures::Picture& p = pictures_.all()[b.block & ~kPicture];

@@ -32,6 +32,7 @@
 #include "welkin/render/splat_cloud.h"
 #include "welkin/render/splat_pictures.h"
 #include "welkin/render/splat_shadow.h"
+#include "welkin/shading/far_order.h"
 #include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
@@ -73,6 +74,9 @@ class SplatPass {
     shadow_.draw(clouds, eyeM, lights_.toKey, depth_);
   }
   void setShadow(gpu::Program& program) const { shadow_.set(program); }
+
+  // Of the balls and pictures last drawn.
+  const shading::FarOrder& order() const { return order_; }
 
  private:
   struct Block;  // a cloud in view, and where its stacks are
@@ -122,9 +126,9 @@ class SplatPass {
   SplatPictures pictures_;
   std::vector<Whole> wholes_;  // of each cloud; radius 0: none
   std::vector<Piece> pieces_;
-  std::vector<std::uint32_t> order_;  // far to near, as the last frame had it
-  std::vector<float> distances_;      // of each piece
-  std::vector<glm::vec3> tileOf_;     // of each piece: texel at its tile's corner, texels on its side
+  shading::FarOrder order_;        // of the pieces
+  std::vector<float> distances_;   // of each piece
+  std::vector<glm::vec3> tileOf_;  // of each piece: texel at its tile's corner, texels on its side
   std::vector<float> values_;
   std::vector<std::uint32_t> bySize_;
   SplatShadow shadow_;

@@ -163,6 +163,19 @@ TEST_F(SplatPicturesTest, AFrameIsTheSameAfterADetour) {
   EXPECT_EQ(first.data, drawn(clouds).data);
 }
 
+// From frame to frame the order is mended, not found anew.
+TEST_F(SplatPicturesTest, ASmallStepSortsLittle) {
+  const std::vector<Drawn> clouds = {cloud(placedAt(6.0), 0.5f), cloud(placedAt(9.0, 2.0), 0.5f, 2)};
+  drawn(clouds);
+  const std::size_t fresh = pass.order().comparisons();
+  EXPECT_TRUE(pass.order().isFresh());
+  EXPECT_GT(pass.order().order().size(), 400u);
+  view.eyeM += glm::dvec3(1.0, 2.0, 0.0);
+  drawn(clouds);
+  EXPECT_FALSE(pass.order().isFresh());
+  EXPECT_LT(pass.order().comparisons(), fresh / 4);
+}
+
 // A ball before a picture hides it, and one behind is hidden; a picture says how far away it is.
 TEST_F(SplatPicturesTest, HasItsPlaceInTheOrder) {
   const scene::MetaballLayer::Cloud placed = placedAt(6.0);
