@@ -158,6 +158,10 @@ class Fit(ProgramTest):
         refuse("none.vdb", "none.vdb")
         volume("zero.raw", [3, 3, 3], [0] * 27)
         refuse("cannot fit zero.raw: the map is empty: its density is 0 everywhere", "zero.raw")
+        volume("holes.raw", [3, 3, 3], [-1] * 27)
+        refuse("cannot fit holes.raw: the map's density is nowhere above 0; expected some, or a signed fit", "holes.raw")
+        volume("much.raw", [3, 3, 3], [3e38] * 27)
+        refuse("cannot fit much.raw: the largest density of the map is 3e+38; expected 1e-27 to 1e+27", "much.raw")
         volume("nan.raw", [2, 1, 1], [1, math.nan])
         refuse("nan.raw", "nan.raw")
         volume("one.raw", [1, 1, 1], [0.5])
@@ -184,7 +188,19 @@ class Fit(ProgramTest):
                                                                              for d in (1, -1)]}))
         self.fail_with(2, "two.json has levels of 2 balls; expected one of them in --balls", *args, "two.json", "--balls", "3")
         self.fail_with(1, "negative densities; expected a signed fit", *args, "two.json")
+        self.write("away.json", json.dumps({"welkin": "metaballs", "balls": [{"center_m": [1e6, 0, 0], "radius_m": 90, "density": 1}]}))
+        self.fail_with(1, "cannot fit m.raw: none of the balls to go on from is within the map", *args, "away.json")
+        self.write("cut.json", (self.folder / "two.json").read_text()[:-9])
+        self.fail_with(1, "cut.json:1:", *args, "cut.json")
+        self.write("twice.json", (self.folder / "two.json").read_text().replace('"density": -1', '"density": 2, "density": 1'))
+        self.fail_with(1, "twice.json: ball 1: density is there twice; expected it once", *args, "twice.json")
         self.fail_with(1, "bad.json: ball 0: the radius is -1", "info", "bad.json")
+
+    def test_what_cannot_be_written(self):
+        args = ("fit", "m.raw", "--balls", "3", "--effort", "0")
+        self.fail_with(1, "cannot write none/x.json: No such file or directory", *args, "-o", "none/x.json")
+        (self.folder / "full.json").symlink_to("/dev/full")
+        self.fail_with(1, "cannot write full.json: No space left on device", *args, "-o", "full.json")
 
 
 if __name__ == "__main__":

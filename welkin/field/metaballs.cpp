@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -17,9 +18,7 @@ namespace {
 constexpr int kSlabSlices = 4;
 constexpr int kMostBins = 64;  // on an axis
 
-bool finite(const glm::dvec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
+constexpr double kMostM = 1e15, kMostDensity = 1e30;
 
 }  // namespace
 
@@ -51,12 +50,17 @@ Box boundsOf(std::span<const Metaball> balls) {
 void validate(std::span<const Metaball> balls) {
   for (std::size_t i = 0; i < balls.size(); ++i) {
     const Metaball& b = balls[i];
-    const std::string where = "ball " + std::to_string(i) + ": ";
-    if (!finite(b.centreM)) throw ParameterError(where + "the centre is not finite");
-    if (!std::isfinite(b.radiusM) || b.radiusM <= 0.0)
-      throw ParameterError(where + "the radius is " + std::to_string(b.radiusM) +
-                           "; expected a positive number");
-    if (!std::isfinite(b.density)) throw ParameterError(where + "the density is not finite");
+    const auto fail = [&](const std::string& what, double value, const char* expected) {
+      std::ostringstream text;
+      text << "ball " << i << ": the " << what << " is " << value << "; expected " << expected;
+      throw ParameterError(text.str());
+    };
+    for (int a = 0; a < 3; ++a)
+      if (!(std::abs(b.centreM[a]) <= kMostM))
+        fail(std::string("centre's ") + "xyz"[a], b.centreM[a], "a number within 1e15 m of 0");
+    if (!(b.radiusM > 0.0 && b.radiusM <= kMostM))
+      fail("radius", b.radiusM, "a positive number up to 1e15 m");
+    if (!(std::abs(b.density) <= kMostDensity)) fail("density", b.density, "a number from -1e30 to 1e30");
   }
 }
 

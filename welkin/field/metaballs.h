@@ -73,8 +73,8 @@ class MetaballField {
   std::vector<std::uint32_t> members_;
 };
 
-// Throws ParameterError that names the first ball whose centre, radius or density is not finite or whose
-// radius is not positive.
+// Throws ParameterError that names the first ball whose centre, radius or density is not finite or beyond
+// what floats can reckon with (1e15 m, densities of 1e30), or whose radius is not positive.
 void validate(std::span<const Metaball> balls);
 
 // Where the voxels of a volume stand: as io::TexelNotes says it of files.

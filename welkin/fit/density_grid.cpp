@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "welkin/core/error.h"
@@ -10,6 +11,9 @@
 
 namespace welkin::fit {
 namespace {
+
+// Balls' densities and radii, a few times these, stay well within what their files may hold.
+constexpr double kLeastDensity = 1e-27, kMostDensity = 1e27, kLeastVoxelM = 1e-9, kMostReachM = 1e12;
 
 void count(DensityGrid& g) {
   g.squares = 0.0;
@@ -26,25 +30,48 @@ void count(DensityGrid& g) {
     }
 }
 
+void expectWithin(const std::string& what, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  std::ostringstream text;
+  text << what << " is " << value << "; expected " << least << " to " << most;
+  throw ParameterError(text.str());
+}
+
 }  // namespace
 
 DensityGrid densityGrid(const Volume<float>& map, const field::VoxelFrame& frame) {
   if (map.data.empty()) throw ParameterError("the map has no voxels");
-  DensityGrid g;
-  g.grid = {map.nx, map.ny, map.nz, map.nx + field::kRowPadding, frame.firstVoxelM, frame.voxelSizeM};
-  g.density.assign(g.grid.floats(), 0.0f);
+  float largest = 0.0f;
   for (int z = 0; z < map.nz; ++z)
     for (int y = 0; y < map.ny; ++y) {
       const float* row = &map.at(0, y, z);
-      for (int x = 0; x < map.nx; ++x)
+      for (int x = 0; x < map.nx; ++x) {
         if (!std::isfinite(row[x]))
           throw ParameterError("the map's density at voxel (" + std::to_string(x) + ", " + std::to_string(y) +
                                ", " + std::to_string(z) + ") is not finite");
-      std::copy_n(row, map.nx, &g.density[g.grid.row(y, z)]);
+        largest = std::max(largest, std::abs(row[x]));
+      }
     }
+  if (largest == 0.0f) throw ParameterError("the map is empty: its density is 0 everywhere");
+  expectWithin("the largest density of the map", static_cast<double>(largest), kLeastDensity, kMostDensity);
+  const glm::dvec3 voxels(map.nx, map.ny, map.nz);
+  for (int a = 0; a < 3; ++a) {
+    expectWithin("a voxel's edge in metres", frame.voxelSizeM[a], kLeastVoxelM, kMostReachM);
+    expectWithin("the map's reach in metres",
+                 std::max(std::abs(frame.firstVoxelM[a]),
+                          std::abs(frame.firstVoxelM[a] + voxels[a] * frame.voxelSizeM[a])),
+                 0.0, kMostReachM);
+  }
+  DensityGrid g;
+  g.grid = {map.nx, map.ny, map.nz, map.nx + field::kRowPadding, frame.firstVoxelM, frame.voxelSizeM};
+  g.unit = std::ldexp(1.0, std::ilogb(largest));
+  g.density.assign(g.grid.floats(), 0.0f);
+  for (int z = 0; z < map.nz; ++z)
+    for (int y = 0; y < map.ny; ++y)
+      for (int x = 0; x < map.nx; ++x)
+        g.density[g.grid.row(y, z) + static_cast<std::size_t>(x)] =
+            static_cast<float>(static_cast<double>(map.at(x, y, z)) / g.unit);
   count(g);
-  if (!(g.squares > 0.0)) throw ParameterError("the map is empty: its density is 0 everywhere");
-  if (!std::isfinite(g.squares)) throw ParameterError("the map's densities are too large to be squared");
   return g;
 }
 
@@ -52,6 +79,7 @@ DensityGrid coarser(const DensityGrid& fine) {
   const BallGrid& from = fine.grid;
   const auto half = [](int n) { return n == 1 ? 1 : (n + 1) / 2; };
   DensityGrid g;
+  g.unit = fine.unit;
   BallGrid& to = g.grid;
   to.nx = half(from.nx), to.ny = half(from.ny), to.nz = half(from.nz);
   to.stride = to.nx + field::kRowPadding;

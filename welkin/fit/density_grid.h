@@ -14,15 +14,16 @@ namespace welkin::fit {
 
 struct DensityGrid {
   BallGrid grid;                 // metres
-  std::vector<float> density;    // the padding is 0
+  std::vector<float> density;    // in `unit`s; the padding is 0
+  double unit = 1.0;             // of the map's: a power of two, so that the largest is from 1 to 2
   double squares = 0.0;          // the sum of their squares
   std::int64_t cloudVoxels = 0;  // those that are not 0
 
   std::int64_t voxels() const { return std::int64_t{grid.nx} * grid.ny * grid.nz; }
 };
 
-// Throws ParameterError for a map without voxels, with a density that is not finite (and says where), or with
-// none but zero.
+// Throws ParameterError for a map without voxels, with a density that is not finite (and says where), with
+// none but zero, or with sizes or densities so large or small that balls could not be told by floats.
 DensityGrid densityGrid(const Volume<float>& map, const field::VoxelFrame& frame);
 
 // Means of 2 x 2 x 2 voxels; where a size is odd, with clear air beyond the far face. An axis of one voxel

@@ -41,15 +41,15 @@ double secondsSince(Clock::time_point t) {
   return std::chrono::duration<double>(Clock::now() - t).count();
 }
 
-std::vector<GridBall> gridBalls(std::span<const field::Metaball> balls) {
+std::vector<GridBall> gridBalls(std::span<const field::Metaball> balls, double unit) {
   std::vector<GridBall> out;
-  for (const field::Metaball& b : balls) out.push_back({b.centreM, b.radiusM, b.density});
+  for (const field::Metaball& b : balls) out.push_back({b.centreM, b.radiusM, b.density / unit});
   return out;
 }
 
-std::vector<field::Metaball> metaballs(std::span<const GridBall> balls) {
+std::vector<field::Metaball> metaballs(std::span<const GridBall> balls, double unit) {
   std::vector<field::Metaball> out;
-  for (const GridBall& b : balls) out.push_back({b.centre, b.radius, b.weight});
+  for (const GridBall& b : balls) out.push_back({b.centre, b.radius, b.weight * unit});
   return out;
 }
 
@@ -59,7 +59,7 @@ class LevelFit {
   LevelFit(const std::vector<DensityGrid>& pyramid, const FitParams& params, const FitLevel& level,
            std::optional<Clock::time_point> end, std::function<void(double, double)> report)
       : pyramid_(pyramid), params_(params), count_(level.count), report_(std::move(report)) {
-    balls_ = gridBalls(level.balls);
+    balls_ = gridBalls(level.balls, pyramid[0].unit);
     control_.check = [this] { report_(done_, relative_); };
     control_.late = [end] { return end && Clock::now() > *end; };
   }
@@ -240,12 +240,14 @@ void measure(const DensityGrid& data, std::span<const GridBall> balls, FitLevel&
   std::vector<float> r;
   const double squares = residual(data, balls, BallLists(data.grid, balls), r);
   level.relativeL2 = std::sqrt(squares / data.squares);
-  level.rmse = std::sqrt(squares / static_cast<double>(data.voxels()));
+  level.rmse = data.unit * std::sqrt(squares / static_cast<double>(data.voxels()));
 }
 
 void validate(const DensityGrid& data, const FitParams& params, const std::vector<FitLevel>& levels) {
   if (params.isSigned && params.method == FitMethod::kMan)
     throw ParameterError("the method man has no signed densities; expected refined or weights");
+  if (!params.isSigned && std::ranges::none_of(data.density, [](float d) { return d > 0.0f; }))
+    throw ParameterError("the map's density is nowhere above 0; expected some, or a signed fit");
   for (const FitLevel& level : levels) {
     const std::string balls = std::to_string(level.count) + (level.count == 1 ? " ball" : " balls");
     if (level.count < 1) throw ParameterError("a level of 0 balls; expected at least 1");
@@ -259,6 +261,11 @@ void validate(const DensityGrid& data, const FitParams& params, const std::vecto
     for (const field::Metaball& b : level.balls)
       if (b.density < 0.0 && !params.isSigned)
         throw ParameterError("the balls to go on from have negative densities; expected a signed fit");
+    const auto meetsMap = [&](const GridBall& b) {
+      return gainOfBall(data.grid, b, data.density.data()).ff > 0.0;
+    };
+    if (!std::ranges::any_of(gridBalls(level.balls, data.unit), meetsMap))
+      throw ParameterError("none of the balls to go on from is within the map; expected those of this map");
   }
 }
 
@@ -305,7 +312,7 @@ void fitMetaballs(const Volume<float>& map, const field::VoxelFrame& frame, cons
     });
     const auto finish = [&] {
       if (job.balls().empty()) return;
-      level.balls = metaballs(job.balls());
+      level.balls = metaballs(job.balls(), pyramid[0].unit);
       measure(pyramid[0], job.balls(), level);
       level.seconds = secondsSince(begin);
     };

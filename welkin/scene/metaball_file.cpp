@@ -30,6 +30,75 @@ void appendErrors(const MetaballLevel& level, std::string& text) {
   if (level.rmse) text += ",\n\"rmse\": " + Json(*level.rmse).dump();
 }
 
+// Finds keys that an object has twice, of which a reader would take the last without a word.
+class KeysOnce {
+ public:
+  explicit KeysOnce(const std::string& name) : name_(name) {}
+
+  bool operator()(int, Json::parse_event_t event, const Json& parsed) {
+    switch (event) {
+      case Json::parse_event_t::object_start:
+      case Json::parse_event_t::array_start:
+        open_.emplace_back();
+        open_.back().isList = event == Json::parse_event_t::array_start;
+        break;
+      case Json::parse_event_t::key:
+        addKey(parsed.get_ref<const std::string&>());
+        break;
+      case Json::parse_event_t::object_end:
+      case Json::parse_event_t::array_end:
+        open_.pop_back();
+        [[fallthrough]];
+      case Json::parse_event_t::value:
+        if (!open_.empty()) ++open_.back().index;
+    }
+    return true;
+  }
+
+ private:
+  struct Open {
+    bool isList = false;
+    std::size_t index = 0;  // of the value to come
+    std::vector<std::string> keys;
+  };
+
+  void addKey(const std::string& key) {
+    std::vector<std::string>& keys = open_.back().keys;
+    if (std::ranges::find(keys, key) != keys.end())
+      throw ParseError(name_, 0, 0, place() + key + " is there twice; expected it once");
+    keys.push_back(key);
+  }
+
+  // "level 1: ball 3: "
+  std::string place() const {
+    std::string text;
+    for (std::size_t i = 0; i + 2 < open_.size(); ++i) {
+      if (open_[i].keys.empty() || !open_[i + 1].isList) continue;
+      const std::string& list = open_[i].keys.back();
+      const std::string number = std::to_string(open_[i + 1].index) + ": ";
+      if (list == "levels") text += "level " + number;
+      if (list == "balls") text += "ball " + number;
+    }
+    return text;
+  }
+
+  const std::string& name_;
+  std::vector<Open> open_;
+};
+
+// What a parser says, without its number and the place: "unexpected end of input; expected ...".
+std::string reasonOf(const Json::exception& e) {
+  constexpr std::size_t kMostLength = 120;
+  std::string text = e.what();
+  for (const std::string before : {" - ", "] "})
+    if (const auto at = text.find(before); at != std::string::npos) {
+      text = text.substr(at + before.size());
+      break;
+    }
+  // What was last read may be long.
+  return text.size() <= kMostLength ? text : text.substr(0, text.find(';'));
+}
+
 class Reader {
  public:
   explicit Reader(std::string name) : name_(std::move(name)) {}
@@ -99,16 +168,16 @@ std::string metaballText(const MetaballFile& file) {
 MetaballFile parseMetaballs(const std::string& text, const std::string& name) {
   Json json;
   try {
-    json = Json::parse(text);
+    json = Json::parse(text, KeysOnce(name));
   } catch (const Json::parse_error& e) {
     const std::size_t at = std::min(e.byte > 0 ? e.byte - 1 : 0, text.size());
     const auto begin = text.begin(), place = begin + static_cast<std::ptrdiff_t>(at);
     const auto line = 1 + std::count(begin, place, '\n');
     const std::size_t lineBegin = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
     const std::size_t column = lineBegin == std::string::npos ? at + 1 : at - lineBegin;
-    throw ParseError(name, static_cast<int>(line), static_cast<int>(column), "is no JSON");
+    throw ParseError(name, static_cast<int>(line), static_cast<int>(column), "is no JSON: " + reasonOf(e));
   } catch (const Json::exception& e) {  // a number that is out of range
-    throw ParseError(name, 0, 0, std::string("is no JSON: ") + e.what());
+    throw ParseError(name, 0, 0, "is no JSON: " + reasonOf(e));
   }
   const Reader reader(name);
   const auto kind = json.is_object() ? json.find("welkin") : json.end();

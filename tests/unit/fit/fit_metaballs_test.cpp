@@ -188,6 +188,23 @@ TEST(FitMetaballs, StopsWithTheBestSoFar) {
   EXPECT_LT(levels[1].relativeL2, 0.5);
 }
 
+// Their squares are beyond what floats hold; the errors are those of the same map of middling densities.
+TEST(FitMetaballs, DensitiesMayHaveAnyUnit) {
+  const Map map = smallCloud();
+  const FitLevel middling = fitOne(map, 10, {.effort = 0.0});
+  for (const float unit : {0x1p-80f, 0x1p80f}) {
+    Map other = map;
+    for (float& v : other.density.data) v *= unit;
+    const FitLevel level = fitOne(other, 10, {.effort = 0.0});
+    EXPECT_DOUBLE_EQ(level.relativeL2, middling.relativeL2);
+    EXPECT_DOUBLE_EQ(level.rmse, middling.rmse * static_cast<double>(unit));
+    for (std::size_t i = 0; i < level.balls.size(); ++i) {
+      EXPECT_EQ(level.balls[i].centreM, middling.balls[i].centreM);
+      EXPECT_DOUBLE_EQ(level.balls[i].density, middling.balls[i].density * static_cast<double>(unit));
+    }
+  }
+}
+
 TEST(FitMetaballs, TinyMaps) {
   Volume<float> one(1, 1, 1, 1);
   one.data[0] = 0.7F;
@@ -208,6 +225,7 @@ TEST(FitMetaballs, WhatCannotBeFittedIsRefused) {
   EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);  // 0 everywhere
   map.data[5] = 1.0F;
   EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);  // 2 balls, 1 voxel
+  EXPECT_THROW(fitMetaballs(map, {3, 3, 3, glm::dvec3(1e300)}, {}, levels), ParameterError);
   map.data[6] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);
   map.data[6] = 1.0F;
@@ -216,6 +234,8 @@ TEST(FitMetaballs, WhatCannotBeFittedIsRefused) {
   levels[0].balls = {{{0, 0, 0}, 1, 1}};
   EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);  // goes on from one ball with two
   levels[0].balls = {{{0, 0, 0}, 1, 1}, {{0, 0, 0}, 1, -1}};
+  EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);
+  levels[0].balls = {{{900, 0, 0}, 1, 1}, {{0, 900, 0}, 1, 1}};  // of another map
   EXPECT_THROW(fitMetaballs(map, frame, {}, levels), ParameterError);
   levels[0].count = 0;
   levels[0].balls.clear();

@@ -75,6 +75,15 @@ TEST(MetaballFile, WhatIsWrongIsNamed) {
   refuse(R"({"welkin": "metaballs", "levels": 1, "balls": []})", "levels: expected a list");
   refuse(R"({"welkin": "metaballs", "levels": [{"balls": []}], "balls": []})",
          "level 0: balls: expected a list");
+  refuse(withBall(R"({"center_m": [0,1e20,0], "radius_m": 1, "density": 1})"),
+         "ball 1: the centre's y is 1e+20");
+  refuse(withBall(R"({"center_m": [0,0,0], "radius_m": 1, "density": 1e38})"),
+         "ball 1: the density is 1e+38");
+  refuse(withBall(R"({"center_m": [0,0,0], "radius_m": 1, "density": 1, "radius_m": 2})"),
+         "ball 1: radius_m is there twice");
+  refuse(R"({"welkin": "metaballs", "balls": [], "balls": []})", "x.json: balls is there twice");
+  refuse(R"({"welkin": "metaballs", "levels": [{}, {"balls": [{}, {"density": 1, "density": 2}]}]})",
+         "level 1: ball 1: density is there twice");
   EXPECT_THROW(readMetaballs("no_such_file.json"), IoError);
   // Deep nesting must not end the program.
   refuse(std::string(100000, '['), "is no JSON");
