@@ -23,6 +23,7 @@ DensityGrid someMap(int nx = 21, int ny = 18, int nz = 14) {
 std::vector<GridBall> someBalls(const DensityGrid& data, int count, std::uint64_t seed = 2) {
   Random random(seed);
   std::vector<GridBall> balls;
+  balls.reserve(static_cast<std::size_t>(count));
   const glm::dvec3 size = data.grid.step * glm::dvec3(data.grid.nx, data.grid.ny, data.grid.nz);
   for (int i = 0; i < count; ++i)
     balls.push_back(

@@ -27,6 +27,7 @@ std::vector<glm::dvec3> someBalls() {
 
 std::vector<float> distancesFrom(const glm::dvec3& eye, const std::vector<glm::dvec3>& balls) {
   std::vector<float> distances;
+  distances.reserve(balls.size());
   for (const glm::dvec3& b : balls) distances.push_back(static_cast<float>(glm::length(b - eye)));
   return distances;
 }
