@@ -16,6 +16,8 @@ constexpr double kRadii[] = {0.5, 0.8, 1.25, 1.8};  // tried, of the typical rad
 constexpr double kSpacing = 0.7;                    // of the places tried
 constexpr double kNear = 0.7;  // neighbours nearer than this share of both radii can do a ball's work
 constexpr std::size_t kGrain = 32;
+constexpr int kFewSteps = 6;
+constexpr double kHopeless = 3.0;  // of what is enough, after so few steps
 
 using Block = Eigen::Matrix<double, 5, 5>;
 using Five = Eigen::Matrix<double, 5, 1>;
@@ -183,7 +185,12 @@ double goRound(const DensityGrid& data, std::vector<GridBall>& balls, const Deto
                const RefineParams& params, const FitControl& control) {
   const std::size_t count = balls.size();
   placeUpTo(count + detour.more, meanRadius(balls), detour.passed, data, balls, params, control);
-  double squares = refine(data, balls, params, control);
+  // A few steps tell what is hopeless.
+  RefineParams few = params;
+  few.steps = kFewSteps;
+  double squares = refine(data, balls, few, control);
+  if (squares > kHopeless * detour.enough) return std::numeric_limits<double>::infinity();
+  squares = refine(data, balls, params, control);
   if (squares > detour.enough) return std::numeric_limits<double>::infinity();
   while (balls.size() > count) {
     control.check();
