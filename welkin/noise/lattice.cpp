@@ -14,12 +14,13 @@ double wrapTo(double p, double repeat) {
 
 }  // namespace
 
-Axis::Axis(std::uint32_t key, double frequency, double offset, double repeat)
+Axis::Axis(std::uint32_t key, double frequency, double offset, double repeat, double cells)
     : key_(key),
       period_(static_cast<std::uint32_t>(std::lround(repeat * frequency))),
       frequency_(frequency),
       offset_(repeat > 0.0 ? wrapTo(offset, repeat) : offset),
-      repeat_(repeat) {}
+      repeat_(repeat),
+      cells_(cells) {}
 
 Span Axis::at(double p, double shiftCells) const {
   if (repeat_ > 0.0) p = wrapTo(p, repeat_);
@@ -30,7 +31,7 @@ Span Axis::at(double p, double shiftCells) const {
   const double product = sum * frequency_;
   const double error = std::fma(sum, frequency_, -product) + sumError * frequency_;
   const double cell = std::floor(product);
-  double inside = ((product - cell) + error) + shiftCells;
+  double inside = ((product - cell) + error) + (cells_ + shiftCells);
   const double period = period_ == 0 ? 4294967296.0 : static_cast<double>(period_);
   auto low = static_cast<std::uint32_t>(cell - period * std::floor(cell / period));
   if (inside < 0.0 || inside >= 1.0) {

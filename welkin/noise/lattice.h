@@ -44,8 +44,9 @@ class Axis {
  public:
   Axis() = default;
   // `frequency` cells a unit of the domain; positions are shifted by `offset` units. With repeat > 0 the
-  // lattice repeats after so many units; repeat * frequency must then be whole, and at least 1.
-  Axis(std::uint32_t key, double frequency, double offset, double repeat);
+  // lattice repeats after so many units; repeat * frequency must then be whole, and at least 1. Few cells
+  // more are added after all that, where a far offset does not round them.
+  Axis(std::uint32_t key, double frequency, double offset, double repeat, double cells = 0.0);
 
   // Exact to the last bits of a double however far the position is: neither the sum nor the product loses
   // the place within the cell. p must be finite; the shift is added in cells.
@@ -61,7 +62,7 @@ class Axis {
  private:
   std::uint32_t key_ = 0;
   std::uint32_t period_ = 0;  // cells; 0: 2^32
-  double frequency_ = 1.0, offset_ = 0.0, repeat_ = 0.0;
+  double frequency_ = 1.0, offset_ = 0.0, repeat_ = 0.0, cells_ = 0.0;
 };
 
 // Perlin's fade 6 t^5 - 15 t^4 + 10 t^3 and its derivative.

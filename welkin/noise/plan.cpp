@@ -24,13 +24,12 @@ struct Builder {
         hashOf(static_cast<std::uint64_t>(p.seed), stream, which, octave, axis));
   }
 
-  Axis axis(std::uint32_t key, int i, double factor, double shiftCells) const {
-    const double f = p.frequency[i] * factor;
-    return {key, f, p.offset[i] + shiftCells / p.frequency[i], p.tile ? 1.0 : 0.0};
+  Axis axis(std::uint32_t key, int i, double factor, double cells = 0.0) const {
+    return {key, p.frequency[i] * factor, p.offset[i], p.tile ? 1.0 : 0.0, cells};
   }
 
   // Octave `octave` of a stream. With `stretch` other than 1 its cells are so much smaller, as nearly as
-  // tiling allows.
+  // tiling allows; the shift is in cells that are not.
   GradientLattice lattice(Stream stream, int which, int octave, double stretch = 1.0,
                           double shiftCells = 0.0) const {
     const double factor = std::pow(p.lacunarity, octave);
@@ -38,7 +37,7 @@ struct Builder {
     for (int i = 0; i < dimensions(); ++i) {
       double f = factor * stretch;
       if (p.tile) f = std::max(std::round(p.frequency[i] * f), 1.0) / p.frequency[i];
-      axes[i] = axis(key(stream, which, octave, i), i, f, shiftCells / factor);
+      axes[i] = axis(key(stream, which, octave, i), i, f, shiftCells * f / factor);
     }
     int count = dimensions();
     if (p.time) {
@@ -52,7 +51,7 @@ struct Builder {
 
   CellLattice cells(int which, int octave, double factor) const {
     std::array<Axis, 3> axes;
-    for (int i = 0; i < dimensions(); ++i) axes[i] = axis(key(kFeature, which, octave, i), i, factor, 0.0);
+    for (int i = 0; i < dimensions(); ++i) axes[i] = axis(key(kFeature, which, octave, i), i, factor);
     std::optional<double> time = p.time;
     const double pace = std::pow(p.timeLacunarity, octave);
     if (time) *time *= pace;
@@ -62,7 +61,7 @@ struct Builder {
   ValueTerm value(int octave) const {
     const double factor = std::pow(p.lacunarity, octave);
     ValueTerm term{Value(valueSettings(octave)), {}, weight(octave)};
-    for (int i = 0; i < dimensions(); ++i) term.axes[i] = axis(0, i, factor, 0.0);
+    for (int i = 0; i < dimensions(); ++i) term.axes[i] = axis(0, i, factor);
     return term;
   }
 

@@ -51,6 +51,24 @@ TEST(Perlin, IsTheSameFarFromTheOrigin) {
     EXPECT_NEAR(there.sample(q), here.sample(q + p.offset), 1e-12);
 }
 
+// After a whole number of periods all is as it was, what shifts distorted noise's distortion included.
+TEST(Noise, IsTheSameAfterManyPeriods) {
+  for (const Kind kind :
+       {Kind::kPerlin, Kind::kValue, Kind::kCellular, Kind::kPerlinWorley, Kind::kCurl, Kind::kDistorted}) {
+    NoiseParams p;
+    p.kind = kind;
+    p.frequency = {6, 5, 3};
+    const Noise here(p);
+    p.offset = {1e9, -1e9, 999999999.0};
+    const Noise there(p);
+    Random random(5);
+    for (int i = 0; i < 50; ++i) {
+      const glm::dvec3 q = somewhere(random, 1.0);
+      EXPECT_NEAR(there.sample(q), here.sample(q), 1e-12) << "kind " << static_cast<int>(kind);
+    }
+  }
+}
+
 // Beyond 2^53 cells, where doubles leave cells out.
 TEST(Axis, CountsEveryCellFarAway) {
   const Axis axis(1, 8192.0, 1e15, 0.0);
