@@ -5,8 +5,12 @@
 
 namespace welkin::app {
 
-// SIGINT and SIGTERM set the flag from now on.
+// SIGINT, SIGTERM and SIGHUP set the flag from now on.
 void catchInterrupts();
+
+// A file that would grow beyond the process's limit is an error, as on a full disk, and does not end the
+// program amid it.
+void takeFileLimitsAsErrors();
 
 // Throws Interrupted once the flag is set.
 void throwIfInterrupted();

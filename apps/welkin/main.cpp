@@ -16,6 +16,7 @@
 #include "fit_command.h"
 #include "help_command.h"
 #include "info_command.h"
+#include "interrupt.h"
 #include "metar_command.h"
 #include "noise_command.h"
 #include "render_command.h"
@@ -104,5 +105,6 @@ int runProgram(int argc, const char* const* argv) {
 }  // namespace welkin::app
 
 int main(int argc, char** argv) {
+  welkin::app::takeFileLimitsAsErrors();
   return welkin::app::runProgram(argc, argv);
 }
