@@ -2,23 +2,13 @@
 #include "welkin/io/convert_texels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "welkin/core/error.h"
 
 namespace welkin::io {
 namespace {
-
-constexpr float kLargestHalf = 65504.0f;
-
-std::string shortest(float x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", static_cast<double>(x));
-  return text.data();
-}
 
 bool isInteger(ValueType type) {
   return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;

@@ -26,8 +26,6 @@
 namespace welkin::io {
 namespace {
 
-constexpr float kLargestHalf = 65504.0f;
-
 // Lets OpenEXR write through AtomicFile, so that its errors and the rename at the end are those of all
 // formats.
 class Stream : public Imf::OStream {
@@ -308,8 +306,11 @@ Texels readExrTexels(const std::filesystem::path& path) {
     shape.format.channels = !rgb ? Channels::kL : list.findChannel("A") ? Channels::kRgba : Channels::kRgb;
     const int channels = countOf(shape.format.channels);
     bool allHalf = true;
-    for (const std::string& name : channelNames(channels))
-      allHalf = allHalf && list.findChannel(name)->type == Imf::HALF;
+    const std::vector<std::string> names = channelNames(channels);
+    for (const std::string& name : names) allHalf = allHalf && list.findChannel(name)->type == Imf::HALF;
+    for (auto c = list.begin(); c != list.end(); ++c)
+      if (std::find(names.begin(), names.end(), c.name()) == names.end())
+        texels.notes.leftOut.push_back(std::string("channel ") + c.name());
     shape.format.type = allHalf ? ValueType::kHalf : ValueType::kFloat;
     const Imath::Box2i window = header.dataWindow();
     shape.nx = window.max.x - window.min.x + 1;

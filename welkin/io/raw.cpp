@@ -11,6 +11,7 @@
 
 #include "welkin/core/error.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/file_extension.h"
 #include "welkin/io/input_file.h"
 
 namespace welkin::io {
@@ -163,13 +164,16 @@ Texels readSide(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::filesystem::path rawTexelPath(std::filesystem::path path) {
+  return lowerExtension(path) == ".json" ? path.replace_extension() : path;
+}
 std::filesystem::path rawSidePath(const std::filesystem::path& path) {
-  return path.string() + ".json";
+  return lowerExtension(path) == ".json" ? path : std::filesystem::path(path.string() + ".json");
 }
 
 struct RawWriter::Impl {
   Impl(const std::filesystem::path& path, const TexelShape& s, const TexelNotes& notes)
-      : shape(s), texels(path), side(rawSidePath(path)) {
+      : shape(s), texels(rawTexelPath(path)), side(rawSidePath(path)) {
     side.write(sideText(shape, notes));
   }
   TexelShape shape;
@@ -201,14 +205,12 @@ void writeRaw(const std::filesystem::path& path, const Texels& texels) {
 }
 
 Texels readRaw(const std::filesystem::path& path) {
-  const bool isSide = path.extension() == ".json";
-  std::filesystem::path texelPath = path;
-  if (isSide) texelPath.replace_extension();
-  Texels texels = readSide(rawSidePath(texelPath));
+  const std::filesystem::path texelPath = rawTexelPath(path), sidePath = rawSidePath(path);
+  Texels texels = readSide(sidePath);
   InputFile file(texelPath);
   if (file.size() != texels.shape.bytes())
-    file.fail("the file has " + std::to_string(file.size()) + " bytes; " + rawSidePath(texelPath).string() +
-              " says " + std::to_string(texels.shape.bytes()));
+    file.fail("the file has " + std::to_string(file.size()) + " bytes; " + sidePath.string() + " says " +
+              std::to_string(texels.shape.bytes()));
   texels.bytes.resize(texels.shape.bytes());
   file.read(texels.bytes.data(), texels.bytes.size());
   requireFinite(texels, texelPath, 0);

@@ -19,10 +19,11 @@
 
 namespace welkin::io {
 
-// "cloud.raw" to "cloud.raw.json".
+// Both of either: "cloud.raw" and "cloud.raw.json".
+std::filesystem::path rawTexelPath(std::filesystem::path path);
 std::filesystem::path rawSidePath(const std::filesystem::path& path);
 
-// Both files appear at close(), the side file last. Streams: nothing is kept in memory.
+// `path` is either. Both files appear at close(), the side file last. Streams: nothing is kept in memory.
 class RawWriter : public TexelWriter {
  public:
   RawWriter(const std::filesystem::path& path, const TexelShape& shape, const TexelNotes& notes = {});
@@ -37,7 +38,7 @@ class RawWriter : public TexelWriter {
 
 void writeRaw(const std::filesystem::path& path, const Texels& texels);
 
-// `path` is that of the texels or of the side file. The texels' file must have exactly the size that the side
+// `path` is either. The texels' file must have exactly the size that the side
 // file says, which is checked before memory is asked for. Throws IoError with the place, also for no JSON.
 Texels readRaw(const std::filesystem::path& path);
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -14,7 +15,6 @@
 namespace welkin::io {
 namespace {
 
-constexpr float kLargestHalf = 65504.0f;
 constexpr std::array<std::string_view, 6> kChannelNames = {"a", "l", "r", "la", "rgb", "rgba"};
 constexpr std::array<std::string_view, 4> kTypeNames = {"8", "16", "16f", "32f"};
 
@@ -123,6 +123,12 @@ float Texels::value(int x, int y, int z, int c) const {
   float value = 0.0f;
   toFloats(shape.format.type, std::span(bytes).subspan(at, bytesOf(shape.format.type)), {&value, 1});
   return value;
+}
+
+std::string shortest(float x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", static_cast<double>(x));
+  return text.data();
 }
 
 std::string texelPlace(const TexelShape& shape, std::size_t value) {

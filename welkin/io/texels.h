@@ -27,6 +27,7 @@ namespace welkin::io {
 // (0, 0, 0, a), L8 as (l, l, l, 1) and R8 as (r, 0, 0, 1)); the value is the same. RGBA is straight alpha.
 enum class Channels : std::uint8_t { kA, kL, kR, kLa, kRgb, kRgba };
 enum class ValueType : std::uint8_t { kUnorm8, kUnorm16, kHalf, kFloat };
+inline constexpr float kLargestHalf = 65504.0f;
 
 constexpr int countOf(Channels channels) {
   return channels == Channels::kRgba ? 4 : channels == Channels::kRgb ? 3 : channels == Channels::kLa ? 2 : 1;
@@ -72,6 +73,7 @@ struct TexelNotes {
   glm::dvec3 firstVoxelM{0.0};                  // volumes: where the centre of voxel (0, 0, 0) is, metres
   std::string name;                             // of the volume: "density" is what renderers look for
   std::map<std::string, std::string> metadata;  // key and text
+  std::vector<std::string> leftOut;             // by reading, of what the file holds: "channel Z"
 };
 
 struct Texels {
@@ -104,6 +106,9 @@ struct Texels {
 // clamped to +-65504; no number (NaN) becomes 0. Both spans hold the same number of values.
 void toFloats(ValueType type, std::span<const std::byte> values, std::span<float> floats);
 void fromFloats(std::span<const float> floats, ValueType type, std::span<std::byte> values);
+
+// Six digits at most, for messages.
+std::string shortest(float x);
 
 // "texel (3, 4)", "texel (3, 4, 5), channel 1": where the value of that number is, for messages.
 std::string texelPlace(const TexelShape& shape, std::size_t value);

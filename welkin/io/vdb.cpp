@@ -344,6 +344,8 @@ Texels readVdb(const std::filesystem::path& path, const VdbReadOptions& options)
     const CoordBBox box = boxOf(file, head, tree);
     Texels texels(shapeOf(file, box, entry.half));
     texels.notes.name = entry.name;
+    for (const vdb::Entry& other : contents.grids)
+      if (&other != &entry) texels.notes.leftOut.push_back("grid " + other.name);
     texels.notes.voxelSizeM = head.scale;
     texels.notes.firstVoxelM =
         head.translation + head.scale * glm::dvec3(box.min().x(), box.min().y(), box.min().z());

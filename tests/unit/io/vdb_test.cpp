@@ -139,6 +139,7 @@ TEST_F(Vdb, TheGridIsChosenByName) {
   colour->setName("colour");
   writeByOpenVdb({colour, named("heat", 1.0f), named("density", 2.0f)}, 6);
   EXPECT_EQ(readVdb(path()).value(0, 0, 0), 2.0f);
+  EXPECT_EQ(readVdb(path()).notes.leftOut, (std::vector<std::string>{"grid colour", "grid heat"}));
   EXPECT_EQ(readVdb(path(), {.grid = "heat"}).value(0, 0, 0), 1.0f);
   EXPECT_EQ(messageOf<IoError>([&] { readVdb(path(), {.grid = "colour"}); }),
             "cannot read " + path().string() +
