@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "interrupt.h"
@@ -17,6 +18,7 @@
 #include "welkin/field/cumulus_tower.h"
 #include "welkin/field/metaball_cumulus.h"
 #include "welkin/io/atomic_file.h"
+#include "welkin/io/file_extension.h"
 #include "welkin/scene/ellipsoid_file.h"
 #include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_json.h"
@@ -114,24 +116,47 @@ Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
   return map;
 }
 
-TexelSource sourceOf(const CloudRequest& r, const std::string& out) {
+// Names of files may be no UTF-8.
+std::string dumped(const Json& j, int indent) {
+  return j.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+// Everything that the cloud was made of.
+Json cloudJson(const CloudArgs& args, const CloudRequest& r) {
+  Json j = Json::parse(scene::toJson(r.map));
+  if (args.metaballs) {
+    for (const char* unused : {"threshold", "base_m", "noise"}) j.erase(unused);
+    j["metaballs"] = *args.metaballs;
+  } else if (args.ellipsoids) {
+    j["ellipsoids"] = *args.ellipsoids;
+  } else if (args.cumulus) {
+    j["tower"] = Json::parse(scene::toJson(r.tower));
+  } else {
+    j["ellipsoid"] = Json::parse(scene::toJson(r.ellipsoid));
+  }
+  return j;
+}
+
+TexelSource sourceOf(const CloudArgs& args, const CloudRequest& r) {
   TexelSource s;
   s.command = "cloud";
   s.size = {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny), static_cast<int>(r.map.nz)};
   s.volume = true;
   s.northUp = true;
-  const bool dds = out.ends_with(".dds") || out.ends_with(".DDS");
-  s.format = dds ? io::TexelFormat{io::Channels::kA, io::ValueType::kUnorm8}
+  s.measures = true;
+  s.format = fileKindOf(s.command, *args.output.out) == io::TexelFileKind::kDds
+                 ? io::TexelFormat{io::Channels::kA, io::ValueType::kUnorm8}
                  : io::TexelFormat{io::Channels::kR, io::ValueType::kFloat};
   s.notes.voxelSizeM = glm::dvec3(r.map.voxelM);
   s.notes.firstVoxelM = field::firstVoxelM(r.map);
   s.notes.name = "density";
-  s.notes.metadata = {{"Software", "welkin " WELKIN_VERSION}, {"welkin_cloud", scene::toJson(r.map, -1)}};
+  s.notes.metadata = {{"Software", "welkin " WELKIN_VERSION},
+                      {"welkin_cloud", dumped(cloudJson(args, r), -1)}};
   return s;
 }
 
-Json reportOf(const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& output, std::int64_t voxels,
-              double ms) {
+Json reportOf(const CloudArgs& args, const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& output,
+              std::int64_t voxels, double ms) {
   const TexelStatistics& s = output.statistics();
   return {{"welkin", WELKIN_VERSION},
           {"size", {r.map.nx, r.map.ny, r.map.nz}},
@@ -146,7 +171,8 @@ Json reportOf(const CloudRequest& r, std::size_t ellipsoids, const TexelOutput& 
           {"histogram", s.histogram()},
           {"total_ms", ms},
           {"peak_rss_mib", peakRssMib()},
-          {"cloud", Json::parse(scene::toJson(r.map))}};
+          {"cloud", cloudJson(args, r)},
+          {"output", *args.output.out}};
 }
 
 // A tower of metaballs, without a map between.
@@ -178,7 +204,7 @@ int growMetaballs(const CloudArgs& args) {
         {"integral_m3", field::integralOf(file.balls())},
         {"total_ms", watch.ms()},
         {"cloud", {{"dynamics", r.map.dynamics}, {"tower", Json::parse(scene::toJson(r.tower))}}}};
-    io::writeTextFile(*o.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    io::writeTextFile(*o.report, dumped(report, 2) + "\n");
   }
   return 0;
 }
@@ -200,7 +226,8 @@ std::vector<ParamFlag> cloudParamFlags() {
 int runCloud(const CloudArgs& args) {
   if (!args.output.out) throw UsageError("cloud: expected -o OUT, the file to write");
   if (args.output.threads) setThreadCount(threadsOf(*args.output.threads));
-  if (args.output.out->ends_with(".json") && !args.output.out->ends_with(".raw.json"))
+  const std::filesystem::path out = *args.output.out;
+  if (io::lowerExtension(out) == ".json" && io::lowerExtension(out.stem()) != ".raw")
     return growMetaballs(args);
   CloudRequest request;
   catchInterrupts();
@@ -213,7 +240,7 @@ int runCloud(const CloudArgs& args) {
     ellipsoids = ellipsoidsOf(args, request);
     validateMap(request.map);
   }
-  TexelOutput output(args.output, sourceOf(request, *args.output.out));
+  TexelOutput output(args.output, sourceOf(args, request));
   ProgressLine progress;
   progress.begin("filling the cloud");
   if (!args.metaballs)
@@ -231,9 +258,8 @@ int runCloud(const CloudArgs& args) {
   }
   output.close();
   if (args.output.report) {
-    Json report = reportOf(request, ellipsoids.size(), output, voxels, watch.ms());
-    report["output"] = *args.output.out;
-    io::writeTextFile(*args.output.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    const Json report = reportOf(args, request, ellipsoids.size(), output, voxels, watch.ms());
+    io::writeTextFile(*args.output.report, dumped(report, 2) + "\n");
   }
   return 0;
 }

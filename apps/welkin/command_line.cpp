@@ -228,6 +228,8 @@ void describeConvert(CLI::App* app, ConvertArgs& a) {
   app->add_option("in", a.in, "picture .png .exr .hdr, picture or volume .dds .raw, volume .vdb")
       ->type_name("IN");
   app->add_option("out", a.out, "the same")->type_name("OUT");
+  add(app, "--grid", a.grid, "NAME",
+      "which grid of a .vdb to read (default density, else the first of floats)");
   addTexelFile(app, a.file, "what loses nothing", "clamp");
 }
 

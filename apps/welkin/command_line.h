@@ -72,6 +72,7 @@ struct FitArgs {
 
 struct ConvertArgs {
   std::string in, out;
+  Flag grid;
   TexelFileFlags file;
 };
 

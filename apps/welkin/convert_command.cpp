@@ -3,11 +3,14 @@
 
 #include <string>
 
+#include "interrupt.h"
+#include "progress_line.h"
 #include "texel_flags.h"
 #include "usage_error.h"
 #include "welkin/core/error.h"
 #include "welkin/io/convert_texels.h"
 #include "welkin/io/texel_file.h"
+#include "welkin/io/vdb.h"
 
 namespace welkin::app {
 namespace {
@@ -15,16 +18,27 @@ namespace {
 using io::Channels;
 using io::TexelFileKind;
 
+std::string whyNot(TexelFileKind kind, const io::TexelShape& shape) {
+  const bool volumes =
+      kind == TexelFileKind::kDds || kind == TexelFileKind::kRaw || kind == TexelFileKind::kVdb;
+  if (shape.volume && !volumes) return ", which holds pictures; expected .dds, .raw or .vdb";
+  if (!shape.volume && kind == TexelFileKind::kVdb) return ", which holds volumes";
+  if (kind == TexelFileKind::kVdb) return ", which holds one value a voxel";
+  io::TexelFormat integers = shape.format;
+  if (io::countOf(integers.channels) == 1) integers.channels = Channels::kL;
+  integers.type = io::ValueType::kUnorm16;
+  return kind == TexelFileKind::kPng ? "; expected --format " + nameOf(integers) + ", if it is within 0 to 1"
+                                     : "";
+}
+
 // What was asked for, or what loses nothing.
 io::TexelFormat formatFor(const ConvertArgs& args, TexelFileKind kind, io::TexelShape shape,
                           const io::DdsOptions& dds) {
   const std::string name = shape.volume ? "volume of " : "picture of ";
   if (!args.file.format) {
     if (const auto nearest = io::nearestFormat(kind, shape, dds)) return *nearest;
-    throw ParameterError(
-        "cannot convert " + args.in + " to " + args.out + ": the " + name + nameOf(shape.format) +
-        " does not fit into that kind of file" +
-        (kind == TexelFileKind::kPng && !shape.volume ? "; --format l16 or rgb8 makes it fit" : ""));
+    throw ParameterError("cannot convert " + args.in + " to " + args.out + ": the " + name +
+                         nameOf(shape.format) + " does not fit into that kind of file" + whyNot(kind, shape));
   }
   try {
     shape.format = io::texelFormat(*args.file.format);
@@ -46,16 +60,25 @@ io::TexelFormat formatFor(const ConvertArgs& args, TexelFileKind kind, io::Texel
 
 int runConvert(const ConvertArgs& args) {
   if (args.in.empty() || args.out.empty()) throw UsageError("convert: expected two files, IN and OUT");
-  fileKindOf("convert", args.in);
+  if (fileKindOf("convert", args.in) != TexelFileKind::kVdb && args.grid)
+    throw UsageError("convert: --grid is for .vdb, which " + args.in + " is not");
   const TexelFileKind kind = fileKindOf("convert", args.out);
   const io::DdsOptions dds = ddsOptions("convert", args.file, kind, io::MipEdges::kClamp);
-  const io::Texels texels = io::readTexels(args.in);
+  const io::Texels texels = args.grid ? io::readVdb(args.in, {.grid = *args.grid}) : io::readTexels(args.in);
+  ProgressLine progress;
+  for (const std::string& what : texels.notes.leftOut) progress.warn(args.in + ": " + what + " is left out");
+  catchInterrupts();
   io::TexelShape shape = texels.shape;
   shape.format = formatFor(args, kind, shape, dds);
   const auto writer = io::createTexelFile(args.out, shape, texels.notes, dds);
   io::TexelConverter converter(texels.shape, shape.format);
   try {
-    for (int z = 0; z < shape.nz; ++z) writer->write(converter.convert(texels.slice(z)));
+    progress.begin("writing");
+    for (int z = 0; z < shape.nz; ++z) {
+      throwIfInterrupted();
+      progress.show(static_cast<double>(z) / shape.nz);
+      writer->write(converter.convert(texels.slice(z)));
+    }
   } catch (const ParameterError& e) {
     throw ParameterError("cannot convert " + args.in + " to " + args.out + ": " + e.what());
   }

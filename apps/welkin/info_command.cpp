@@ -88,6 +88,7 @@ Json texelsJson(const std::string& path) {
   if (kind == TexelFileKind::kVdb)
     for (const io::VdbGrid& grid : io::readVdbGrids(path))
       j["grids"].push_back({{"name", grid.name}, {"type", grid.type}, {"half", grid.half}});
+  if (!texels.notes.leftOut.empty()) j["left_out"] = texels.notes.leftOut;
   if (kind != TexelFileKind::kDds && kind != TexelFileKind::kHdr) j["metadata"] = texels.notes.metadata;
   return j;
 }

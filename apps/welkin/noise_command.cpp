@@ -82,17 +82,14 @@ TexelSource sourceOf(const Request& r, const NoiseTexture& texture, const std::s
   s.size = r.size;
   s.volume = r.volume;
   s.tiles = r.params.noise.tile;
-  const auto dot = out.rfind('.');
-  const std::string extension = dot == std::string::npos ? "" : out.substr(dot);
-  const bool bytes = extension == ".dds" || extension == ".png";
-  const io::Channels one = extension == ".dds"   ? io::Channels::kA
-                           : extension == ".png" ? io::Channels::kL
-                                                 : io::Channels::kR;
+  const io::TexelFileKind kind = fileKindOf(s.command, out);
+  const bool dds = kind == io::TexelFileKind::kDds, png = kind == io::TexelFileKind::kPng;
+  const io::Channels one = dds ? io::Channels::kA : png ? io::Channels::kL : io::Channels::kR;
   const int channels = texture.channels();
   s.format = {channels == 1   ? one
               : channels == 4 ? io::Channels::kRgba
                               : io::Channels::kRgb,
-              bytes ? io::ValueType::kUnorm8 : io::ValueType::kFloat};
+              dds || png ? io::ValueType::kUnorm8 : io::ValueType::kFloat};
   if (r.params.isPlain()) {
     const field::Lift lift = field::liftOf(r.params.noise);
     s.scale = lift.scale, s.bias = lift.bias;

@@ -2,13 +2,18 @@
 #include "texel_output.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "picture_writer.h"
 #include "texel_flags.h"
 #include "usage_error.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
+#include "welkin/io/file_extension.h"
+#include "welkin/io/raw.h"
 
 namespace welkin::app {
 namespace {
@@ -31,12 +36,30 @@ glm::ivec2 tilesOf(const Flag& tile) {
   return n;
 }
 
+// However they are spelt.
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto plain = [](const std::filesystem::path& path) {
+    std::error_code error;
+    const auto absolute = std::filesystem::absolute(path, error);
+    const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+    return error ? absolute : canonical;
+  };
+  return plain(a) == plain(b);
+}
+
+bool isOutput(const OutputArgs& args, const std::string& path) {
+  if (isSameFile(path, *args.out)) return true;
+  const bool json = io::lowerExtension(*args.out) == ".json";  // RAW's side file, or a file of metaballs
+  if (!json && io::lowerExtension(*args.out) != ".raw") return false;
+  return isSameFile(path, io::rawTexelPath(*args.out)) || isSameFile(path, io::rawSidePath(*args.out));
+}
+
 void checkPreview(const OutputArgs& args) {
   if (args.tile && !args.preview) throw UsageError("--tile goes with --preview");
   if (!args.preview) return;
-  if (!args.preview->ends_with(".png"))
+  if (io::lowerExtension(*args.preview) != ".png")
     throw UsageError("--preview: " + *args.preview + " is no .png; expected a name such as preview.png");
-  if (*args.preview == *args.out)
+  if (isOutput(args, *args.preview))
     throw UsageError("--preview: " + *args.preview + " is the output already; expected another name");
 }
 
@@ -44,13 +67,13 @@ void checkPreview(const OutputArgs& args) {
 
 void checkReport(const OutputArgs& args) {
   if (!args.report) return;
-  if (args.report == args.out || args.report == args.preview)
+  if (isOutput(args, *args.report) || (args.preview && isSameFile(*args.report, *args.preview)))
     throw UsageError("--report: " + *args.report + " is written already; expected another name");
   checkWritable(*args.report);
 }
 
 TexelOutput::TexelOutput(const OutputArgs& args, const TexelSource& source)
-    : source_(source), previewPath_(args.preview.value_or("")) {
+    : source_(source), path_(*args.out), previewPath_(args.preview.value_or("")) {
   const io::TexelFileKind kind = fileKindOf(source.command, *args.out);
   checkPreview(args);
   const glm::ivec2 tiles = tilesOf(args.tile);
@@ -75,6 +98,26 @@ TexelOutput::TexelOutput(const OutputArgs& args, const TexelSource& source)
   writer_ = io::createTexelFile(*args.out, shape_, source.notes, dds);
 }
 
+void TexelOutput::requireHeld(std::span<const float> values) {
+  const io::ValueType type = shape_.format.type;
+  const float most = type == io::ValueType::kHalf          ? io::kLargestHalf
+                     : isInteger(type) && source_.measures ? 1.0f
+                                                           : HUGE_VALF;
+  const auto beyond =
+      std::find_if(values.begin(), values.end(), [most](float v) { return std::abs(v) > most; });
+  if (beyond != values.end()) {
+    io::TexelShape own = shape_;
+    own.format.channels = source_.format.channels;
+    io::TexelFormat floats{own.format.channels, io::ValueType::kFloat};
+    if (floats.channelCount() == 1) floats.channels = io::Channels::kR;
+    throw ParameterError("cannot write " + path_ + ": " +
+                         io::texelPlace(own, written_ + static_cast<std::size_t>(beyond - values.begin())) +
+                         " is " + io::shortest(*beyond) + ", which " + io::nameOf(shape_.format) +
+                         " cannot hold; expected --format " + io::nameOf(floats));
+  }
+  written_ += values.size();
+}
+
 void TexelOutput::write(std::span<float> values) {
   const io::ValueType type = shape_.format.type;
   const std::size_t size = io::bytesOf(type);
@@ -85,12 +128,18 @@ void TexelOutput::write(std::span<float> values) {
                      std::span(bytes_).subspan(begin * size, (end - begin) * size));
     });
   };
-  if (!isInteger(type)) store();
+  if (!isInteger(type)) {
+    requireHeld(values);
+    store();
+  }
   if (source_.scale != 1.0f || source_.bias != 0.0f)
     parallelFor(values.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (float& v : values.subspan(begin, end - begin)) v = source_.scale * v + source_.bias;
     });
-  if (isInteger(type)) store();
+  if (isInteger(type)) {
+    requireHeld(values);
+    store();
+  }
   statistics_->add(values);
   if (preview_) preview_->add(values);
   writer_->write(converter_ ? converter_->convert(bytes_) : std::span<const std::byte>(bytes_));
