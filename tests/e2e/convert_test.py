@@ -73,13 +73,47 @@ class Convert(ProgramTest):
     def test_what_cannot_be_kept(self):
         self.write_raw("a.raw", [2, 1], "r", "float32", [0.5, 1.5])
         self.fail_with(1, "texel (1, 0) is 1.5, which l8 cannot hold", "convert", "a.raw", "b.png", "--format", "l8")
-        self.fail_with(1, "the picture of r32f does not fit", "convert", "a.raw", "b.png")
-        self.fail_with(1, "the picture of r32f does not fit", "convert", "a.raw", "b.vdb")
+        self.fail_with(1, "the picture of r32f does not fit into that kind of file; expected --format l16", "convert", "a.raw",
+                       "b.png")
+        self.fail_with(1, "the picture of r32f does not fit into that kind of file, which holds volumes", "convert", "a.raw",
+                       "b.vdb")
         colour = str(DATA / "gimp_mips.dds")
         self.fail_with(1, "is not grey, which l8 cannot hold", "convert", colour, "b.dds", "--format", "l8")
-        self.fail_with(1, "the volume of l8 does not fit", "convert", str(DATA / "gimp_volume_L8.dds"), "b.png")
+        self.fail_with(1, "the volume of l8 does not fit into that kind of file, which holds pictures", "convert",
+                       str(DATA / "gimp_volume_L8.dds"), "b.png")
+        self.write_raw("c.raw", [1, 1, 1], "rgb", "uint8", [1, 2, 3])
+        self.fail_with(1, "which holds one value a voxel", "convert", "c.raw", "b.vdb")
         self.write_raw("n.raw", [2, 1], "r", "float32", [0.5, float("nan")])
         self.fail_with(1, "no finite number at texel (1, 0) (byte 4)", "convert", "n.raw", "b.exr")
+
+    def write_exr(self, path, names):
+        """One pixel of floats, channel i is i, not compressed."""
+        def attribute(name, kind, value):
+            return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+        box, channels = struct.pack("<4i", 0, 0, 0, 0), b"".join(
+            n.encode() + b"\0" + struct.pack("<4i", 2, 0, 1, 1) for n in sorted(names))
+        header = struct.pack("<2i", 20000630, 2) + attribute("channels", "chlist", channels + b"\0") + attribute(
+            "compression", "compression", b"\0") + attribute("dataWindow", "box2i", box) + attribute(
+            "displayWindow", "box2i", box) + attribute("lineOrder", "lineOrder", b"\0") + attribute(
+            "pixelAspectRatio", "float", struct.pack("<f", 1)) + attribute("screenWindowCenter", "v2f", bytes(8)) + attribute(
+            "screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+        row = struct.pack(f"<2i{len(names)}f", 0, 4 * len(names), *range(len(names)))
+        (self.folder / path).write_bytes(header + struct.pack("<Q", len(header) + 8) + row)
+
+    def test_what_is_left_out_is_said(self):
+        self.write_exr("a.exr", "BGRZ")
+        done = self.run_program("convert", "a.exr", "b.raw")
+        self.assertEqual((done.returncode, done.stderr), (0, b"welkin: warning: a.exr: channel Z is left out\n"))
+        self.assertEqual(struct.unpack("<3f", self.bytes_of("b.raw")), (2, 1, 0))
+        self.assertEqual(self.info("a.exr")["left_out"], ["channel Z"])
+
+    def test_a_grid_by_its_name(self):
+        self.write_raw("a.raw", [1, 1, 1], "r", "float32", [0.5], name="smoke")
+        self.succeed("convert", "a.raw", "a.vdb")
+        self.succeed("convert", "a.vdb", "b.raw", "--grid", "smoke")
+        self.assertEqual(self.bytes_of("b.raw"), self.bytes_of("a.raw"))
+        self.fail_with(1, 'there is no grid "fire"', "convert", "a.vdb", "c.raw", "--grid", "fire")
+        self.fail_with(2, "--grid is for .vdb", "convert", "a.raw", "c.raw", "--grid", "smoke")
 
     def test_called_wrongly(self):
         colour = str(DATA / "gimp_mips.dds")

@@ -101,6 +101,24 @@ class Noise(ProgramTest):
         self.succeed("noise", "--size", "16x16x40", "-o", "x.dds", "--preview", "p.png")
         self.assertEqual(read_png(self.folder / "p.png")[:2], (4 * 18 - 2, 4 * 18 - 2))
 
+    def test_extensions_in_any_case(self):
+        for name, same in (("x.DDS", "y.dds"), ("x.PNG", "y.png")):
+            for out in (name, same):
+                self.succeed("noise", "--size", "16x16", "-o", out, "--preview", "p.PNG")
+            self.assertEqual((self.folder / name).read_bytes(), (self.folder / same).read_bytes())
+        for out in ("x.Dds", "y.dds"):
+            self.succeed("cloud", "-o", out)
+        self.assertEqual((self.folder / "x.Dds").read_bytes(), (self.folder / "y.dds").read_bytes())
+
+    def test_the_side_file_names_both(self):
+        self.succeed("noise", "--size", "16x8", "-o", "x.raw")
+        texels, side = ((self.folder / name).read_bytes() for name in ("x.raw", "x.raw.json"))
+        before = self.files()
+        self.succeed("noise", "--size", "16x8", "-o", "x.raw.json")
+        self.assertEqual(self.files(), before)
+        self.assertEqual((self.folder / "x.raw").read_bytes(), texels)
+        self.assertEqual((self.folder / "x.raw.json").read_bytes(), side)
+
     def test_files(self):
         for name, args in {"a.raw": (), "a.exr": (), "b.png": ("--format", "l16"), "c.dds": ("--format", "r8"),
                            "d.dds": ("--format", "r32f"), "e.dds": ("--mipmaps", "kaiser")}.items():
@@ -163,12 +181,35 @@ class BadNoise(ProgramTest):
             self.refuse("--tile: expected COLUMNSxROWS", *size, "--preview", "p.png", "--tile", tile)
         self.refuse("is no .png", *size, "--preview", "p.jpg")
         self.refuse("is the output already", *size, "--preview", "x.png")
+        self.refuse("is the output already", *size, "--preview", "./x.png")
         self.refuse("is written already", *size, "--report", "x.png")
+        self.refuse("is written already", *size, "--report", "../" + self.folder.name + "/x.png")
+        self.refuse("is written already", *size, "--report", "x.raw.json", out="x.raw")
+        self.refuse("is written already", *size, "--report", "./x.raw", out="x.raw.json")
+        self.refuse("is written already", *size, "--report", "./p.png", "--preview", "p.png")
         self.fail_with(2, "expected -o OUT", "noise", *size)
         for out in ("none/x.png", "/proc/x.png"):
             self.fail_with(1, "cannot write " + out, "noise", *size, "-o", out)
         self.fail_with(1, "cannot write none/", "noise", *size, "-o", "x.png", "--report", "none/r.json")
         self.fail_with(1, "cannot write none/", "noise", *size, "-o", "x.png", "--preview", "none/p.png")
+
+    def test_what_the_file_cannot_hold(self):
+        loud = ("--size", "8x8", "--amplitude", "1e6", "--frequency", "3", "--format")
+        message = self.fail_with(1, "which r16f cannot hold; expected --format r32f", "noise", *loud, "r16f", "-o", "x.dds")
+        self.assertIn("cannot write x.dds: texel (", message)
+        self.succeed("noise", *loud, "r32f", "-o", "x.dds")
+        self.succeed("noise", *loud, "a8", "-o", "x.dds")  # saturates, as the thesis does
+        dense = ("cloud", "--dynamics", "1e6", "-o", "c.dds", "--format")
+        self.fail_with(1, "which r16f cannot hold; expected --format r32f", *dense, "r16f")
+        self.fail_with(1, "which l8 cannot hold; expected --format r32f", *dense, "l8")
+        self.succeed(*dense, "r32f")
+
+    def test_a_limit_of_file_sizes(self):
+        for out in ("x.dds", "x.png", "x.raw"):
+            done = subprocess.run(["bash", "-c", f'ulimit -f 4; exec "{PROGRAM}" noise --size 256x256 -o {out}'], cwd=self.folder,
+                                  stderr=subprocess.PIPE)
+            self.assertEqual((done.returncode, done.stderr), (1, f"welkin: cannot write {out}: File too large\n".encode()))
+            self.assertEqual(self.files(), [])
 
     def test_folder_without_permission(self):
         if os.geteuid() == 0:
@@ -184,7 +225,7 @@ class BadNoise(ProgramTest):
             while not self.files() and time.time() < deadline:
                 time.sleep(0.01)
             self.assertTrue(self.files(), "nothing was begun")
-            process.send_signal(signal.SIGINT)
+            process.send_signal(signal.SIGHUP if out == "x.raw" else signal.SIGINT)
             self.assertEqual(process.communicate(timeout=60)[1], b"welkin: interrupted\n")
             self.assertEqual(process.returncode, 130)
             self.assertEqual(self.files(), [])
@@ -204,6 +245,8 @@ class Cloud(ProgramTest):
         side = json.loads((self.folder / "x.raw.json").read_text())
         self.assertEqual((side["size"], side["voxel_size_m"], side["name"]), ([48, 36, 24], [20, 20, 20], "density"))
         self.assertEqual(side["first_voxel_m"], [-470, -350, 10])
+        self.assertEqual(r["cloud"]["ellipsoid"], {"centre_m": [0, 0, 240], "radii_m": [456, 342, 228], "rotation_deg": [0, 0, 0]})
+        self.assertEqual(json.loads(side["metadata"]["welkin_cloud"]), r["cloud"])
 
     def test_one_ellipsoid_by_flags(self):
         r = self.report("-o", "x.dds", "--size", "40x40x40", "--voxel", "10", "--centre", "0,0,200", "--radii", "150,100,50",
@@ -218,12 +261,14 @@ class Cloud(ProgramTest):
         self.write("e.toml", "".join(f"[[ellipsoid]]\ncentre_m = [{x}, 0, 100]\nradii_m = [90, 90, 90]\n" for x in (-200, 200)))
         r = self.report("--ellipsoids", "e.toml", "--octaves", "0", "-o", "x.raw", "--voxel", "10")
         self.assertEqual((r["ellipsoids"], r["size"]), (2, [61, 19, 20]))
+        self.assertEqual(r["cloud"]["ellipsoids"], "e.toml")
 
     def test_cumulus(self):
         r = self.report("--cumulus", "--width", "1000", "--height", "800", "--voxel", "40", "-o", "x.raw", "--preview", "p.png")
         self.assertEqual(r["size"], [27, 27, 21])
         self.assertGreater(r["ellipsoids"], 50)
         self.assertGreater(r["cloud_voxels"], 1500)
+        self.assertEqual((r["cloud"]["tower"]["width_m"], r["cloud"]["tower"]["height_m"]), (1000, 800))
         self.succeed("cloud", "--cumulus", "--width", "1000", "--height", "800", "--voxel", "40", "-o", "y.raw", "--threads", "1")
         self.assertEqual((self.folder / "x.raw").read_bytes(), (self.folder / "y.raw").read_bytes())
         other = self.report("--cumulus", "--width", "1000", "--height", "800", "--voxel", "40", "-o", "z.raw", "--tower-seed", "1")
