@@ -128,9 +128,12 @@ struct Value::Axis {
   std::vector<std::int64_t> points;          // lattice coordinates, the smoothing's margin among them
   std::vector<int> first;                    // for each sample, index in `points` of its first tap
   std::vector<std::array<float, 4>> weight;  // for each sample, of its taps
-  int taps;
+  int taps = 0;
 
-  Axis(const ValueSettings& settings, std::span<const CellPlace> places) {
+  void set(const ValueSettings& settings, std::span<const CellPlace> places) {
+    points.clear();
+    first.clear();
+    weight.clear();
     const Taps range = tapsOf(settings.interpolation);
     taps = range.last - range.first + 1;
     const int margin = settings.smooth ? 1 : 0;
@@ -152,12 +155,18 @@ struct Value::Axis {
 // The lattice under a box, plane by plane; those in use are kept.
 class Value::Planes {
  public:
-  Planes(const Value& noise, const Axis& x, const Axis& y, const Axis& z)
-      : noise_(noise), x_(x), y_(y), z_(z) {}
+  void begin(const Value& noise, const Axis& x, const Axis& y, const Axis& z) {
+    noise_ = &noise;
+    x_ = &x;
+    y_ = &y;
+    z_ = &z;
+    for (auto* planes : {&smooth_, &hashed_})
+      for (Plane& plane : *planes) plane.k = -1;
+  }
 
   // Plane `k` of z.points; asked for in rising order, up to a step back of `taps`.
   const std::vector<float>& at(int k) {
-    if (!noise_.settings_.smooth) return hashed(k);
+    if (!noise_->settings_.smooth) return hashed(k);
     Plane& plane = smooth_[k % smooth_.size()];
     if (plane.k != k) {
       plane.k = k;
@@ -176,10 +185,10 @@ class Value::Planes {
     Plane& plane = hashed_[k % hashed_.size()];
     if (plane.k != k) {
       plane.k = k;
-      plane.values.resize(static_cast<std::size_t>(x_.size()) * y_.size());
+      plane.values.resize(static_cast<std::size_t>(x_->size()) * y_->size());
       std::size_t n = 0;
-      for (const std::int64_t y : y_.points)
-        for (const std::int64_t x : x_.points) plane.values[n++] = noise_.hash(x, y, z_.points[k]);
+      for (const std::int64_t y : y_->points)
+        for (const std::int64_t x : x_->points) plane.values[n++] = noise_->hash(x, y, z_->points[k]);
     }
     return plane.values;
   }
@@ -187,9 +196,9 @@ class Value::Planes {
   // The margin of `out`, whose neighbours are missing, is left as it is: no sample has a tap there.
   void smooth(std::vector<float>& out, const std::vector<float>& below, const std::vector<float>& here,
               const std::vector<float>& above) const {
-    const int width = x_.size();
+    const int width = x_->size();
     out.resize(here.size());
-    for (int y = 1; y + 1 < y_.size(); ++y)
+    for (int y = 1; y + 1 < y_->size(); ++y)
       for (int x = 1; x + 1 < width; ++x) {
         const std::size_t at = static_cast<std::size_t>(y) * width + x;
         double cube = 0.0;  // summed in the order of lattice(), so that both agree to the bit
@@ -203,9 +212,16 @@ class Value::Planes {
       }
   }
 
-  const Value& noise_;
-  const Axis &x_, &y_, &z_;
+  const Value* noise_ = nullptr;
+  const Axis *x_ = nullptr, *y_ = nullptr, *z_ = nullptr;
   std::array<Plane, 4> smooth_, hashed_;
+};
+
+// Memory of one thread that is kept for the next box.
+struct Value::Room {
+  Axis x, y, z;
+  Planes planes;
+  std::vector<float> slice, row;
 };
 
 void Value::add(std::span<float> out, float weight, const SampleBox& box) const {
@@ -220,9 +236,14 @@ void Value::add(std::span<float> out, float weight, const SampleBox& box) const 
 void Value::add(std::span<float> out, float weight, std::span<const CellPlace> xs,
                 std::span<const CellPlace> ys, std::span<const CellPlace> zs) const {
   assert(out.size() == xs.size() * ys.size() * zs.size());
-  const Axis x(settings_, xs), y(settings_, ys), z(settings_, zs);
-  Planes planes(*this, x, y, z);
-  std::vector<float> slice(static_cast<std::size_t>(x.size()) * y.size()), row(x.points.size());
+  thread_local Room room;
+  auto& [x, y, z, planes, slice, row] = room;
+  x.set(settings_, xs);
+  y.set(settings_, ys);
+  z.set(settings_, zs);
+  planes.begin(*this, x, y, z);
+  slice.resize(static_cast<std::size_t>(x.size()) * y.size());
+  row.resize(x.points.size());
   std::size_t n = 0;
   for (std::size_t k = 0; k < zs.size(); ++k) {
     std::fill(slice.begin(), slice.end(), 0.0f);

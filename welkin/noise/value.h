@@ -73,7 +73,7 @@ class Value {
 
   // out += weight * noise for a box (x fastest, then y, then z; out.size() is the product of box.count), in
   // floats that agree with the point function within 1e-6 * weight. Each lattice point is hashed once.
-  // Memory beside `out`: a few planes of the lattice under the box.
+  // Memory beside `out`: a few planes of the lattice under the box, which the thread keeps.
   void add(std::span<float> out, float weight, const SampleBox& box) const;
   // The same at the places given for each axis, best in rising order.
   void add(std::span<float> out, float weight, std::span<const CellPlace> x, std::span<const CellPlace> y,
@@ -87,6 +87,7 @@ class Value {
  private:
   struct Axis;
   class Planes;
+  struct Room;
   std::uint32_t wrapped(std::int64_t i, int axis) const;
   ValueSettings settings_;
 };

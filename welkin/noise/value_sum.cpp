@@ -19,13 +19,18 @@ CellPlace placeOn(const ValueTerm& term, const NoiseParams& params, int axis, do
 }
 
 // Where samples [begin, begin + count) of a grid's axis lie on an octave.
-std::vector<CellPlace> placesOf(const ValueTerm& term, const NoiseParams& params, const Grid& grid, int axis,
-                                int begin, int count) {
-  std::vector<CellPlace> places(static_cast<std::size_t>(count));
+void setPlaces(const ValueTerm& term, const NoiseParams& params, const Grid& grid, int axis, int begin,
+               int count, std::vector<CellPlace>& places) {
+  places.resize(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     places[i] = placeOn(term, params, axis, (begin + i + 0.5) * grid.spacing[axis]);
-  return places;
 }
+
+// Memory of one thread that is kept for the next fill.
+struct Room {
+  std::vector<Places> places;
+  std::vector<float> sum, octave;
+};
 
 // Adds shaped octaves: `octave` is memory as large as `sum`.
 void addTerms(const std::vector<ValueTerm>& terms, Fractal fractal, std::span<const Places> places,
@@ -76,17 +81,18 @@ void fillValues(const Plan& plan, const NoiseParams& params, const Grid& grid, c
   // Blocks of rows and slices, so that neighbours share the lattice between them; whole rows.
   const glm::ivec3 block(box.size.x, params.dimensions == 3 ? 32 : 64, params.dimensions == 3 ? 16 : 1);
   const int down = (box.size.y + block.y - 1) / block.y, deep = (box.size.z + block.z - 1) / block.z;
-  parallelFor(static_cast<std::size_t>(down) * deep, 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<Places> places(plan.values.size());
-    std::vector<float> sum, octave;
+  const auto body = [&](std::size_t begin, std::size_t end) {
+    thread_local Room room;
+    auto& [places, sum, octave] = room;
+    if (places.size() < plan.values.size()) places.resize(plan.values.size());
     for (std::size_t b = begin; b < end; ++b) {
       const int y0 = static_cast<int>(b % down) * block.y, z0 = static_cast<int>(b / down) * block.z;
       const glm::ivec3 size(box.size.x, std::min(block.y, box.size.y - y0),
                             std::min(block.z, box.size.z - z0));
       const glm::ivec3 first = box.first + glm::ivec3(0, y0, z0);
-      for (std::size_t o = 0; o < places.size(); ++o)
+      for (std::size_t o = 0; o < plan.values.size(); ++o)
         for (int axis = 0; axis < 3; ++axis)
-          places[o][axis] = placesOf(plan.values[o], params, grid, axis, first[axis], size[axis]);
+          setPlaces(plan.values[o], params, grid, axis, first[axis], size[axis], places[o][axis]);
       sum.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
       octave.resize(params.fractal == Fractal::kFbm ? 0 : sum.size());
       addTerms(plan.values, params.fractal, places, sum, octave);
@@ -95,7 +101,8 @@ void fillValues(const Plan& plan, const NoiseParams& params, const Grid& grid, c
           store((static_cast<std::size_t>(z0 + z) * box.size.y + y0 + y) * size.x,
                 std::span(sum).subspan((static_cast<std::size_t>(z) * size.y + y) * size.x, size.x));
     }
-  });
+  };
+  parallelFor(static_cast<std::size_t>(down) * deep, 1, std::ref(body));
 }
 
 }  // namespace welkin::noise

@@ -74,6 +74,7 @@ std::vector<Case> cases() {
       for (const bool evolving : {false, true})
         for (const bool tile : {false, true}) {
           if (p.table == Table::kPublished && dimensions == 3 && evolving) continue;
+          if (p.kind == Kind::kValue && evolving) continue;
           p.dimensions = dimensions;
           p.tile = tile;
           p.frequency = tile ? glm::dvec3(3, 5, 2) : glm::dvec3(0.11, 0.13, 0.3);
@@ -93,6 +94,8 @@ std::vector<Case> cases() {
         f == Fractal::kFbm ? 2e-6 : 6e-6);  // slopes multiply
   }
   add("published", {.octaves = 3, .table = Table::kPublished});
+  for (const Fractal f : {Fractal::kFbm, Fractal::kRidged})
+    add("value", {.kind = Kind::kValue, .octaves = 3, .fractal = f}, f == Fractal::kFbm ? 2e-6 : 6e-6);
   for (const Feature f : {Feature::kF1, Feature::kF2, Feature::kF2MinusF1}) {
     add("cells", {.kind = Kind::kCellular, .octaves = 3, .feature = f});
     add("one cells", {.kind = Kind::kCellular, .octaves = 1, .feature = f});

@@ -69,6 +69,36 @@ TEST(Noise, IsTheSameAfterManyPeriods) {
   }
 }
 
+// No seam on any axis, whatever the kind and the period: nothing jumps where the tile ends.
+TEST(Noise, IsContinuousAcrossEveryEdge) {
+  Random random(6);
+  for (const Kind kind :
+       {Kind::kPerlin, Kind::kValue, Kind::kCellular, Kind::kPerlinWorley, Kind::kCurl, Kind::kDistorted})
+    for (const int dimensions : {2, 3})
+      for (const int period : {1, 3, 7, 192, 1536}) {
+        NoiseParams p;
+        p.kind = kind;
+        p.dimensions = dimensions;
+        p.octaves = 2;
+        for (int axis = 0; axis < dimensions; ++axis) {
+          p.frequency = {2, 5, 3};
+          p.frequency[axis] = period;
+          const Noise of(p);
+          for (int i = 0; i < 20; ++i) {
+            glm::dvec3 before = somewhere(random, 1.0);
+            before[axis] = 1.0 - 1e-9 / period;
+            glm::dvec3 behind = before;
+            behind[axis] = 1e-9 / period;
+            for (int c = 0; c < of.channels(); ++c) {
+              const double size = 1.0 + std::abs(of.sample(before, c));
+              EXPECT_NEAR(of.sample(before, c), of.sample(behind, c), 1e-6 * size * period)
+                  << "kind " << static_cast<int>(kind) << " axis " << axis << " period " << period;
+            }
+          }
+        }
+      }
+}
+
 // Beyond 2^53 cells, where doubles leave cells out.
 TEST(Axis, CountsEveryCellFarAway) {
   const Axis axis(1, 8192.0, 1e15, 0.0);
