@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "usage_error.h"
+#include "welkin/io/file_extension.h"
 #include "welkin/io/texel_file.h"
 #include "welkin/io/vdb.h"
 #include "welkin/scene/metaball_file.h"
@@ -149,7 +149,7 @@ void printTheme(const InfoArgs& args, bool isFile) {
 }  // namespace
 
 int runInfo(const InfoArgs& args) {
-  const std::string extension = std::filesystem::path(args.file).extension().string();
+  const std::string extension = io::lowerExtension(args.file);
   if (args.theme) {
     printTheme(args, extension == ".toml");
     return 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "interrupt.h"
@@ -29,9 +30,13 @@ struct Request {
   bool volume = false;
 };
 
+std::ptrdiff_t commasIn(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',');
+}
+
 // One number for all axes, two for x and y.
 std::string onAllAxes(const std::string& text) {
-  const auto commas = std::count(text.begin(), text.end(), ',');
+  const auto commas = commasIn(text);
   if (commas == 0) return text + "," + text + "," + text;
   return commas == 1 ? text + text.substr(text.find(',')) : text;
 }
@@ -54,6 +59,8 @@ Request requestOf(const NoiseArgs& args) {
   }
   ParamTexts texts = args.params;
   if (const auto it = texts.find("frequency"); it != texts.end()) it->second = onAllAxes(it->second);
+  if (const auto it = texts.find("offset"); it != texts.end() && commasIn(it->second) == 1)
+    it->second += ",0";
   const auto flags = noiseParamFlags();
   // A cutoff in place of a preset's cover, a density in place of its exponent, and the other way round.
   field::CondensationParams& cloud = r.params.cloud;

@@ -101,6 +101,13 @@ class Noise(ProgramTest):
         self.succeed("noise", "--size", "16x16x40", "-o", "x.dds", "--preview", "p.png")
         self.assertEqual(read_png(self.folder / "p.png")[:2], (4 * 18 - 2, 4 * 18 - 2))
 
+    def test_offset_in_the_plane(self):
+        for offset, out in (("1e9,0.25", "x.dds"), ("1e9,0.25,0", "y.dds"), ("0,0.25", "z.dds")):
+            self.succeed("noise", "--size", "32x16", "--kind", "distorted", "--offset", offset, "-o", out, "--format", "r32f")
+        x, y, z = ((self.folder / name).read_bytes() for name in ("x.dds", "y.dds", "z.dds"))
+        self.assertEqual(x, y)
+        self.assertEqual(x, z)  # whole tiles
+
     def test_extensions_in_any_case(self):
         for name, same in (("x.DDS", "y.dds"), ("x.PNG", "y.png")):
             for out in (name, same):

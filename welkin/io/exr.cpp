@@ -63,7 +63,8 @@ Imf::FrameBuffer frameBuffer(T* origin, Imf::PixelType type, int width, int chan
 void addMetadata(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
                  Imf::Header& header) {
   for (const auto& [key, text] : metadata) {
-    if (key.empty() || header.find(key) != header.end())
+    // "type" is OpenEXR's own, written over as the file is.
+    if (key.empty() || key == "type" || header.find(key) != header.end())
       throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
     header.insert(key, Imf::StringAttribute(text));
   }

@@ -6,6 +6,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -81,11 +82,32 @@ bool encode(png_structp png, png_infop info, const Picture& picture, png_bytepp 
   return true;
 }
 
+// What libpng would shorten or write otherwise.
+void checkTexts(const std::filesystem::path& path, const PngTexts& texts) {
+  constexpr std::size_t kLongestKeyword = 79;
+  const auto isLatin = [](char c) { return (c >= ' ' && c <= '~') || static_cast<unsigned char>(c) > 0xa0; };
+  for (const auto& [key, text] : texts) {
+    const bool good = !key.empty() && key.size() <= kLongestKeyword &&
+                      std::all_of(key.begin(), key.end(), isLatin) && key.front() != ' ' &&
+                      key.back() != ' ' && key.find("  ") == std::string::npos;
+    if (!good)
+      throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
+    if (text.find('\0') != std::string::npos)
+      throw ParameterError("cannot write " + path.string() + ": the metadata \"" + key +
+                           "\" have a zero byte");
+  }
+}
+
+bool isAscii(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
 template <class T>
 void write(const std::filesystem::path& path, const Image<T>& image, const PngTexts& texts) {
   if (image.width < 1 || image.height < 1 || image.channels < 1 || image.channels > 4)
     throw ParameterError("cannot write " + path.string() +
                          ": a PNG has at least one pixel and 1 to 4 channels");
+  checkTexts(path, texts);
   AtomicFile file(path);
   Sink sink{file, nullptr};
   Trouble trouble;
@@ -96,10 +118,11 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   std::vector<png_text> chunks;
   for (const auto& [key, text] : texts) {
     png_text chunk{};
-    chunk.compression = PNG_TEXT_COMPRESSION_NONE;
+    const bool plain = isAscii(text);
+    chunk.compression = plain ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     chunk.key = const_cast<char*>(key.c_str());
     chunk.text = const_cast<char*>(text.c_str());
-    chunk.text_length = text.size();
+    (plain ? chunk.text_length : chunk.itxt_length) = text.size();
     chunks.push_back(chunk);
   }
 

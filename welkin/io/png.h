@@ -13,11 +13,11 @@
 
 namespace welkin::io {
 
-// Keyword (1 to 79 characters) and text of tEXt chunks, "Software" for instance.
+// Keyword (1 to 79 characters) and text, "Software" for instance, in tEXt chunks, or iTXt what is not ASCII.
 using PngTexts = std::map<std::string, std::string>;
 
 // The file appears complete or not at all. Throw IoError, and ParameterError for a picture without pixels or
-// of more channels.
+// of more channels, and for keywords and texts that PNG cannot hold.
 void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image,
               const PngTexts& texts = {});
 void writePng(const std::filesystem::path& path, const Image<std::uint16_t>& image,

@@ -308,7 +308,11 @@ VdbWriter::VdbWriter(const std::filesystem::path& path, const TexelShape& shape,
         !std::isfinite(notes.firstVoxelM[i]))
       refuse("expected a positive voxel size and a finite place");
   initialize();
-  impl_ = std::make_unique<Impl>(path, shape, notes);
+  try {
+    impl_ = std::make_unique<Impl>(path, shape, notes);
+  } catch (const openvdb::ArithmeticError&) {
+    refuse("OpenVDB takes no voxels as small or as far away as that");
+  }
 }
 
 VdbWriter::~VdbWriter() = default;

@@ -65,6 +65,15 @@ TEST_F(ImageFiles, PngIsReadByOthers) {
             "16 258");
 }
 
+TEST_F(ImageFiles, PngKeepsTextsToTheByte) {
+  const PngTexts texts = {
+      {std::string(79, 'k'), "long"}, {"Place", "M\u00fcnchen, 20 \u00b0C \u2601"}, {"empty", ""}};
+  writePng(folder / "a.png", Image<std::uint8_t>(2, 2, 1), texts);
+  PngTexts found;
+  readPng(folder / "a.png", &found);
+  EXPECT_EQ(found, texts);
+}
+
 TEST_F(ImageFiles, PngErrors) {
   const Image<std::uint8_t> image(64, 64, 3);
   EXPECT_EQ(messageOf<IoError>([&] { writePng("/dev/full", image); }),
@@ -74,6 +83,11 @@ TEST_F(ImageFiles, PngErrors) {
   EXPECT_THROW(writePng("/proc/a.png", image), IoError);
   EXPECT_THROW(writePng(folder / "a.png", Image<std::uint8_t>(0, 4, 3)), ParameterError);
   EXPECT_THROW(writePng(folder / "a.png", Image<std::uint8_t>(4, 4, 5)), ParameterError);
+  for (const std::string& key : {std::string(), std::string(80, 'x'), std::string(" x"), std::string("x "),
+                                 std::string("x  y"), std::string("x\ny"), std::string("x\x80")})
+    EXPECT_EQ(messageOf<ParameterError>([&] { writePng(folder / "a.png", image, {{key, "text"}}); }),
+              "cannot write " + (folder / "a.png").string() + ": metadata cannot be named \"" + key + '"');
+  EXPECT_THROW(writePng(folder / "a.png", image, {{"key", std::string("a\0b", 3)}}), ParameterError);
   EXPECT_EQ(fileCount(), 0);
 
   writePng(folder / "a.png", randomIntegers<std::uint8_t>(50, 50, 3));
@@ -148,8 +162,9 @@ TEST_F(ImageFiles, ExrErrors) {
   EXPECT_THROW(writeExr("/proc/a.exr", randomLight(4, 4, 3)), IoError);
   EXPECT_THROW(writeExr(folder / "a.exr", randomLight(4, 4, 2)), ParameterError);
   EXPECT_THROW(writeExr(folder / "a.exr", Image<float>()), ParameterError);
-  EXPECT_THROW(writeExr(folder / "a.exr", randomLight(4, 4, 3), {.metadata = {{"channels", "x"}}}),
-               ParameterError);
+  for (const char* key : {"", "channels", "type"})
+    EXPECT_THROW(writeExr(folder / "a.exr", randomLight(4, 4, 3), {.metadata = {{key, "x"}}}), ParameterError)
+        << key;
   Image<float> bad = randomLight(4, 4, 3);
   bad.at(2, 1, 0) = std::numeric_limits<float>::infinity();
   EXPECT_NE(

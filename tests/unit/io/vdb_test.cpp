@@ -184,6 +184,9 @@ TEST_F(Vdb, WhatIsNotWritten) {
   Texels bad = good;
   bad.notes.voxelSizeM.y = 0.0;
   EXPECT_THROW(writeVdb(path(), bad), ParameterError);
+  bad.notes.voxelSizeM = glm::dvec3(1e-30);
+  EXPECT_EQ(messageOf<ParameterError>([&] { writeVdb(path(), bad); }),
+            "cannot write " + path().string() + ": OpenVDB takes no voxels as small or as far away as that");
   bad = good;
   bad.notes.metadata["file_bbox_min"] = "mine";
   EXPECT_THROW(writeVdb(path(), bad), ParameterError);
