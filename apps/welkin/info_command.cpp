@@ -47,7 +47,7 @@ void addStatistics(Json& j, const io::Texels& texels) {
   for (std::size_t at = 0; at < texels.bytes.size(); at += texels.shape.rowBytes()) {
     io::toFloats(type, std::span(texels.bytes).subspan(at, texels.shape.rowBytes()), row);
     double rowSum = 0.0;
-    for (const float x : row) rowSum += static_cast<double>(x);
+    for (const float x : row) rowSum += one == 1.0 ? static_cast<double>(x) : std::round(one * x);
     const auto [least, most] = std::minmax_element(row.begin(), row.end());
     low = std::min(low, static_cast<double>(*least));
     high = std::max(high, static_cast<double>(*most));
@@ -57,7 +57,7 @@ void addStatistics(Json& j, const io::Texels& texels) {
     return one == 1.0 ? Json(static_cast<float>(x)) : Json(static_cast<int>(std::lround(x * one)));
   };
   j["min"] = stored(low);
-  j["mean"] = one * sum / (static_cast<double>(texels.bytes.size()) / static_cast<double>(io::bytesOf(type)));
+  j["mean"] = sum / (static_cast<double>(texels.bytes.size()) / static_cast<double>(io::bytesOf(type)));
   j["max"] = stored(high);
 }
 

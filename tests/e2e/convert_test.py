@@ -39,7 +39,7 @@ class Convert(ProgramTest):
         info = self.info("c.dds")
         self.assertEqual((info["layout"], info["header"], info["levels"]), ("L8", "legacy", 1))
         self.assertEqual((info["min"], info["max"]), (min(values), max(values)))
-        self.assertAlmostEqual(info["mean"], sum(values) / len(values), places=3)
+        self.assertEqual(info["mean"], sum(values) / len(values))
         self.succeed("convert", "c.dds", "d.raw")
         self.assertEqual(self.bytes_of("d.raw"), bytes(values))
 

@@ -26,6 +26,8 @@
 namespace welkin::io {
 namespace {
 
+constexpr int kLargestSide = 1 << 16;
+
 // Lets OpenEXR write through AtomicFile, so that its errors and the rename at the end are those of all
 // formats.
 class Stream : public Imf::OStream {
@@ -100,6 +102,9 @@ void writeExr(const std::filesystem::path& path, const Image<float>& image, cons
       (image.channels != 1 && image.channels != 3 && image.channels != 4))
     throw ParameterError("cannot write " + path.string() +
                          ": an EXR has at least one pixel and 1, 3 or 4 channels");
+  if (std::max(image.width, image.height) > kLargestSide)
+    throw ParameterError("cannot write " + path.string() + ": an EXR has at most " +
+                         std::to_string(kLargestSide) + " pixels a side");
   requireFinite(image);
   const bool fits =
       std::all_of(image.data.begin(), image.data.end(), [](float x) { return std::abs(x) <= kLargestHalf; });
@@ -156,8 +161,7 @@ namespace {
 
 // OpenEXR asks for memory by what a header says before it has seen a texel: for attributes by their length,
 // for rows of chunks and for tiles by their sizes. So the header is walked here first ("The OpenEXR file
-// layout"): attributes must fit in the file, and no side may be longer than this.
-constexpr int kLargestSide = 1 << 16;
+// layout"): attributes must fit in the file, and sides and tiles are bounded.
 constexpr std::int64_t kLargestTile = 1 << 22;
 constexpr int kRowsAtOnce = 256;  // as many as the largest chunks hold
 

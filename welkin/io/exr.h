@@ -27,8 +27,8 @@ struct ExrOptions {
 };
 
 // 1, 3 or 4 channels. The file appears complete or not at all. Throws IoError; ParameterError for NaNs and
-// infinities (naming the pixel), other channel counts, no pixels, or metadata named like an attribute of the
-// format.
+// infinities (naming the pixel), other channel counts, no pixels or more than 65536 a side, or metadata named
+// like an attribute of the format.
 void writeExr(const std::filesystem::path& path, const Image<float>& image, const ExrOptions& options = {});
 
 struct ExrPicture {

@@ -159,6 +159,7 @@ void checkChunks(InputFile& file) {
 bool decodeHeader(png_structp png, png_infop info, std::FILE* file, Picture* picture) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_init_io(png, file);
+  png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // what fits in the file is checked
   png_set_chunk_malloc_max(png,
                            kLongestText);  // of what is unpacked; the file's own chunks have been checked
   png_read_info(png, info);

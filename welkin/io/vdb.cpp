@@ -29,6 +29,7 @@ using openvdb::FloatTree;
 using Leaf = FloatTree::LeafNodeType;
 
 constexpr int kLeafSide = Leaf::DIM;
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;  // of a box
 constexpr const char *kBoxMin = "welkin_box_min", *kBoxMax = "welkin_box_max";
 
 void initialize() {
@@ -150,7 +151,7 @@ CoordBBox boxOf(const InputFile& file, const vdb::GridHead& head, const FloatTre
 }
 
 TexelShape shapeOf(const InputFile& file, const CoordBBox& box, bool half) {
-  constexpr std::uint64_t kAlways = 1 << 24, kForEachByte = 512, kMost = std::uint64_t{1} << 31;
+  constexpr std::uint64_t kAlways = 1 << 24, kForEachByte = 512;
   std::uint64_t voxels = 1;
   std::array<std::int64_t, 3> size;
   bool overflow = false;
@@ -160,7 +161,7 @@ TexelShape shapeOf(const InputFile& file, const CoordBBox& box, bool half) {
         overflow || __builtin_mul_overflow(
                         voxels, static_cast<std::uint64_t>(size[static_cast<std::size_t>(i)]), &voxels);
   }
-  if (overflow || voxels > kMost || (voxels > kAlways && voxels / kForEachByte > file.size()))
+  if (overflow || voxels > kMostVoxels || (voxels > kAlways && voxels / kForEachByte > file.size()))
     file.fail("the grid's box has " + std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" +
               std::to_string(size[2]) + " voxels, which is too many for a volume from a file of " +
               std::to_string(file.size()) + " bytes");
@@ -303,6 +304,8 @@ VdbWriter::VdbWriter(const std::filesystem::path& path, const TexelShape& shape,
   validate(shape);
   if (!shape.volume) refuse("a VDB holds volumes, not pictures");
   if (countOf(shape.format.channels) != 1) refuse("a grid of a VDB holds one value a voxel");
+  if (shape.bytes() / shape.texelBytes() > kMostVoxels)
+    refuse("a VDB of more than 2^31 voxels would not be read again");
   for (int i = 0; i < 3; ++i)
     if (!(notes.voxelSizeM[i] > 0.0) || !std::isfinite(notes.voxelSizeM[i]) ||
         !std::isfinite(notes.firstVoxelM[i]))

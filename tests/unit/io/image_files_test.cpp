@@ -74,6 +74,11 @@ TEST_F(ImageFiles, PngKeepsTextsToTheByte) {
   EXPECT_EQ(found, texts);
 }
 
+TEST_F(ImageFiles, PngOfAnyWidth) {
+  writePng(folder / "a.png", Image<std::uint8_t>(1000001, 1, 1));
+  EXPECT_EQ(std::get<Image<std::uint8_t>>(readPng(folder / "a.png")).width, 1000001);
+}
+
 TEST_F(ImageFiles, PngErrors) {
   const Image<std::uint8_t> image(64, 64, 3);
   EXPECT_EQ(messageOf<IoError>([&] { writePng("/dev/full", image); }),
@@ -165,6 +170,7 @@ TEST_F(ImageFiles, ExrErrors) {
   for (const char* key : {"", "channels", "type"})
     EXPECT_THROW(writeExr(folder / "a.exr", randomLight(4, 4, 3), {.metadata = {{key, "x"}}}), ParameterError)
         << key;
+  EXPECT_THROW(writeExr(folder / "a.exr", Image<float>(65537, 1, 1)), ParameterError);
   Image<float> bad = randomLight(4, 4, 3);
   bad.at(2, 1, 0) = std::numeric_limits<float>::infinity();
   EXPECT_NE(

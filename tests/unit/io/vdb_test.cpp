@@ -181,6 +181,7 @@ TEST_F(Vdb, WhatIsNotWritten) {
   const Texels good = randomTexels(volumeOf("r32f", 4, 4, 4));
   EXPECT_THROW(writeVdb(path(), randomTexels(pictureOf("r32f", 4, 4))), ParameterError);
   EXPECT_THROW(writeVdb(path(), randomTexels(volumeOf("rgb32f", 4, 4, 4))), ParameterError);
+  EXPECT_THROW(VdbWriter(path(), volumeOf("r32f", 2048, 2048, 1024)), ParameterError);
   Texels bad = good;
   bad.notes.voxelSizeM.y = 0.0;
   EXPECT_THROW(writeVdb(path(), bad), ParameterError);
