@@ -35,6 +35,7 @@
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
 #include "welkin/scene/scene_file.h"
+#include "welkin/shading/fluence_layout.h"
 #include "welkin/shading/uniforms.h"
 
 namespace welkin {
@@ -88,13 +89,17 @@ enum Column {
   kLayerExtinction,
   kPeakShare,  // of the phase function
   kPeakG,
+  kFluence,  // of the sun's light (lib/fluence.glsl): there, and kAheadM farther along the view
+  kFluenceAhead,
   kColumns
 };
 
-// lib/light_volume.glsl on the CPU.
+// lib/light_volume.glsl and lib/fluence.glsl on the CPU.
 struct LightVolume {
   shading::LightVolumeLayout layout;
   Volume<float> texels;
+  shading::FluenceLayout cells;
+  Volume<float> fluence;
 
   float slice(float z) const {
     float s = static_cast<float>(layout.bands[0].firstSlice);
@@ -104,14 +109,13 @@ struct LightVolume {
                       std::clamp((z - b.baseM) / (b.topM - b.baseM), 0.0f, 1.0f));
     return s;
   }
-  glm::vec4 texel(const glm::vec3& q, float s, int cascade) const {
-    const int n = static_cast<int>(layout.heightsM.size());
+  // Trilinear in a cascade's part of a volume; z: in texels.
+  glm::vec4 texel(const Volume<float>& volume, const glm::vec3& q, float z, int cascade) const {
     const float half = layout.kHalfM[static_cast<std::size_t>(cascade)];
     const float c[3] = {
-        std::clamp(q.x / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(texels.nx) - 0.5f,
-        std::clamp(q.y / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(texels.ny) - 0.5f,
-        s + static_cast<float>(cascade * n)};
-    const int size[3] = {texels.nx, texels.ny, texels.nz};
+        std::clamp(q.x / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(volume.nx) - 0.5f,
+        std::clamp(q.y / half * 0.5f + 0.5f, 0.0f, 1.0f) * static_cast<float>(volume.ny) - 0.5f, z};
+    const int size[3] = {volume.nx, volume.ny, volume.nz};
     glm::vec4 sum(0.0f);
     for (int corner = 0; corner < 8; ++corner) {
       float weight = 1.0f;
@@ -122,7 +126,7 @@ struct LightVolume {
         weight *= high ? c[k] - low : 1.0f - (c[k] - low);
         at[k] = std::clamp(static_cast<int>(low) + (high ? 1 : 0), 0, size[k] - 1);
       }
-      for (int ch = 0; ch < 4; ++ch) sum[ch] += weight * texels.at(at[0], at[1], at[2], ch);
+      for (int ch = 0; ch < volume.channels; ++ch) sum[ch] += weight * volume.at(at[0], at[1], at[2], ch);
     }
     return sum;
   }
@@ -133,11 +137,23 @@ struct LightVolume {
     const float half = layout.kHalfM[static_cast<std::size_t>(own)];
     return {own, own == 2 ? 0.0f : std::max((reach / half - 0.77f) / 0.19f, 0.0f)};
   }
-  glm::vec4 at(const glm::vec3& q) const {
+  glm::vec4 blended(const Volume<float>& volume, const glm::vec3& q, float z, int depth) const {
     const auto [own, next] = cascade(q);
-    const float s = slice(q.z);
-    const glm::vec4 there = texel(q, s, own);
-    return next > 0.0f ? glm::mix(there, texel(q, s, own + 1), next) : there;
+    const auto of = [&](int c) { return texel(volume, q, z + static_cast<float>(c * depth), c); };
+    return next > 0.0f ? glm::mix(of(own), of(own + 1), next) : of(own);
+  }
+  glm::vec4 at(const glm::vec3& q) const {
+    return blended(texels, q, slice(q.z), static_cast<int>(layout.heightsM.size()));
+  }
+  float fluenceAt(const glm::vec3& q) const {
+    float cell = cells.bands[0].z;
+    for (std::size_t b = 0; b < layout.bands.size(); ++b) {
+      const auto& band = layout.bands[b];
+      const glm::vec4& of = cells.bands[b];
+      if (q.z >= band.baseM)
+        cell = std::clamp(std::lerp(of.x, of.y, (q.z - band.baseM) / (band.topM - band.baseM)), of.z, of.w);
+    }
+    return blended(fluence, q, cell - 0.5f, static_cast<int>(cells.cells.size())).x;
   }
   float cellM(const glm::vec3& q) const {
     const auto [own, next] = cascade(q);
@@ -281,7 +297,8 @@ FitAgainstTruth judge(const std::vector<float>& rows) {
                                  r[kViewHeight],
                                  r[kToEye],
                                  r[kDistance],
-                                 {r[kBehindToSun], r[kBehindFromSun], r[kBehindUp], r[kBehindDown]}},
+                                 {r[kBehindToSun], r[kBehindFromSun], r[kBehindUp], r[kBehindDown]},
+                                 {r[kFluence], r[kFluenceAhead]}},
                                 {r[kIce], r[kCover], r[kSurface], r[kHeight], r[kDepth], r[kLayerExtinction]},
                                 {r[kPhase], {r[kPeakShare], r[kPeakG]}}, r[kSunHeight]);
     sun += static_cast<double>(s.sun);
@@ -314,10 +331,12 @@ int run(int argc, char** argv) {
     const scene::SkyState& state = seen.state;
     const glm::dvec3 sun = seen.sun;
     const weather::Layer& layer = state.weather.layers[0];
-    LightVolume volume{shading::lightVolumeLayout(state), {}};
+    LightVolume volume{shading::lightVolumeLayout(state), {}, {}, {}};
+    volume.cells = shading::fluenceLayout(volume.layout);
     const render::CloudTextures textures(state.clouds->sharedNoise());
     pass.draw(state, volume.layout, textures);
     volume.texels = pass.volume().read();
+    volume.fluence = pass.fluence().read();
 
     const std::vector<bool> ice{scene::isIce(layer.genus)};
     const reference::CloudMedium medium(*state.clouds, {0}, ice);
@@ -394,6 +413,8 @@ int run(int argc, char** argv) {
           row[kLayerExtinction] = body.extinction;
           row[kPeakShare] = hit->ice ? shared::kIcePeakShare : peak.share;
           row[kPeakG] = hit->ice ? shared::kIcePeakG : peak.g;
+          row[kFluence] = volume.fluenceAt(q);
+          row[kFluenceAhead] = volume.fluenceAt(q + shared::kAheadM * glm::vec3(view));
           double lit = 0.0;
           int above = 0, below = 0;
           for (int k = 0; k < paths; ++k) {

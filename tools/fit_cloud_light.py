@@ -8,19 +8,22 @@
 
 Examples of a file that is named several times count as often.
 
-Needs NumPy. A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
-used. The network: twenty numbers, two layers of twenty-eight x / (1 + |x|), two numbers: the logarithm of a factor of
+Needs JAX and Optax (PyPI). A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
+used. The network: twenty-four numbers, two layers of twenty-eight x / (1 + |x|), two numbers: the logarithm of a factor of
 the light scattered more than once, and of the odds of light from above. Least squares of relative errors, by Adam
 (D. P. Kingma and J. Ba 2015, "Adam: A Method for Stochastic Optimization"). The examples are noisy means over a
 few paths; their noise has no bias, and evens out.
 """
 import argparse
 
+import jax
+import jax.numpy as jnp
 import numpy as np
+import optax
 
 COLUMNS = ("to_sun from_sun up down to_eye cos_sun view_height sun_height ice cover direct phase sun above below "
            "paths genus sky distance behind_to_sun behind_from_sun behind_up behind_down surface height depth layer_extinction "
-           "peak_share peak_g").split()
+           "peak_share peak_g fluence fluence_ahead").split()
 SIMILARITY = 1 - 0.86  # the constants of shaders/lib/cloud_light.glsl
 WIDTH = 28
 LEAST = 0.01           # 1/sr: what errors are relative to where clouds are dark
@@ -67,78 +70,70 @@ def inputs(d):
     """As cloudScattering() of shaders/lib/cloud_scattering.glsl has them."""
     def log(x):
         return np.log1p(np.maximum(x, 0)) / 3
+
+    def radiance(fluence):
+        return np.log(fluence / (4 * np.pi) + 1e-3)
     return np.stack([log(d["to_sun"]), log(d["from_sun"]), log(d["up"]), log(d["down"]), log(d["to_eye"]), d["cos_sun"],
                      d["view_height"], d["sun_height"], np.sqrt(np.maximum(0.5 - 0.5 * d["cos_sun"], 0)), d["ice"],
                      log(d["distance"] / 1000), d["cover"], log(d["behind_to_sun"]), log(d["behind_from_sun"]),
                      log(d["behind_up"]), log(d["behind_down"]), 0.5 * np.clip(d["surface"], -2, 4), d["height"],
-                     0.75 * log(0.01 * d["depth"]), 1.5 * log(300 * d["layer_extinction"])], 1).astype(np.float32)
+                     0.75 * log(0.01 * d["depth"]), 1.5 * log(300 * d["layer_extinction"]), 1.5 + 0.5 * radiance(d["fluence"]),
+                     1.5 + 0.5 * radiance(d["fluence_ahead"]), 2 + radiance(d["fluence"] + np.exp(-SIMILARITY * d["to_sun"])),
+                     4 * (d["fluence_ahead"] - d["fluence"]) / (d["fluence_ahead"] + d["fluence"] + 0.01)], 1).astype(np.float32)
 
 
-class Network:
-    def __init__(self, rng):
-        sizes = [20, WIDTH, WIDTH, 2]
-        self.weights = [rng.normal(0, a ** -0.5, (a, b)).astype(np.float32) for a, b in zip(sizes, sizes[1:])]
-        self.weights[-1] *= 0.1
-        self.biases = [np.zeros(b, np.float32) for b in sizes[1:]]
-        self.parameters = self.weights + self.biases
-        self.first = [np.zeros_like(p) for p in self.parameters]
-        self.second = [np.zeros_like(p) for p in self.parameters]
-        self.steps = 0
-
-    def __call__(self, x):
-        self.values, self.sums = [x], []
-        for i, (w, b) in enumerate(zip(self.weights, self.biases)):
-            z = self.values[-1] @ w + b
-            self.sums.append(z)
-            self.values.append(z / (1 + np.abs(z)) if i < 2 else z)
-        return self.values[-1]
-
-    def step(self, gradient, rate):
-        """Adam, after a call: gradient of the loss by the outputs."""
-        of_weights, of_biases = [], []
-        for i in (2, 1, 0):
-            of_weights.insert(0, self.values[i].T @ gradient)
-            of_biases.insert(0, gradient.sum(0))
-            if i:
-                gradient = (gradient @ self.weights[i].T) / (1 + np.abs(self.sums[i - 1])) ** 2
-        self.steps += 1
-        for p, g, m, v in zip(self.parameters, of_weights + of_biases, self.first, self.second):
-            m *= 0.9
-            m += 0.1 * g
-            v *= 0.999
-            v += 0.001 * g * g
-            p -= rate * (m / (1 - 0.9 ** self.steps)) / (np.sqrt(v / (1 - 0.999 ** self.steps)) + 1e-9)
+def network(parameters, x):
+    for i, (weights, biases) in enumerate(parameters):
+        x = x @ weights + biases
+        if i < 2:
+            x = x / (1 + jnp.abs(x))
+    return x
 
 
-def predicted(network, x, sun, above):
-    out = network(x)
-    return sun * np.exp(np.clip(out[:, 0], -3, 3)), 1 / (1 + (1 / above - 1) * np.exp(-np.clip(out[:, 1], -3, 3)))
+def corrected(out, sun, above):
+    """Light scattered more than once, and the share from above."""
+    return sun * jnp.exp(jnp.clip(out[:, 0], -3, 3)), 1 / (1 + (1 / above - 1) * jnp.exp(-jnp.clip(out[:, 1], -3, 3)))
+
+
+def loss(parameters, x, sun, above, first, true_sun, true_above):
+    s, a = corrected(network(parameters, x), sun, above)
+    # Weights of the last step's prediction: a noisy example that happens to be dark counts no more for it.
+    expected = jax.lax.stop_gradient(s) + LEAST
+    errors = (s - jnp.minimum(true_sun, OUTLIER * expected)) / (expected + 0.3 * first)
+    return jnp.mean(errors ** 2) + jnp.mean((a - true_above) ** 2)
 
 
 def fit(d, rows, steps, seed=0, batch=4096, rate=8e-3):
+    first = np.minimum(d["direct"] * d["phase"], 2) + np.minimum(peaks(d), 2)
+    data = [np.asarray(v, np.float32) for v in (inputs(d), *closed_form(d), first, d["sun"] - peaks(d), d["above"])]
     rng = np.random.default_rng(seed)
-    x = inputs(d)
-    sun, above = (v.astype(np.float32) for v in closed_form(d))
-    first = np.minimum(d["direct"] * d["phase"], 2).astype(np.float32)
-    of_peaks = peaks(d)
-    true_sun, true_above = (d["sun"] - of_peaks).astype(np.float32), d["above"].astype(np.float32)
-    first += np.minimum(of_peaks, 2).astype(np.float32)
-    network = Network(rng)
-    for step in range(steps):
+    sizes = [data[0].shape[1], WIDTH, WIDTH, 2]
+    parameters = [(jnp.asarray(rng.normal(0, (1 if b > 2 else 0.1) * a ** -0.5, (a, b)), jnp.float32), jnp.zeros(b))
+                  for a, b in zip(sizes, sizes[1:])]
+    optimizer = optax.adam(optax.cosine_decay_schedule(rate, steps, 1e-3))
+    state = optimizer.init(parameters)
+
+    @jax.jit
+    def step(parameters, state, *examples):
+        updates, state = optimizer.update(jax.grad(loss)(parameters, *examples), state)
+        return optax.apply_updates(parameters, updates), state
+
+    for _ in range(steps):
         i = rows[rng.integers(0, len(rows), batch)]
-        s, a = predicted(network, x[i], sun[i], above[i])
-        # Weights of the last step's prediction: a noisy example that happens to be dark counts no more for it.
-        error = (s - np.minimum(true_sun[i], OUTLIER * (s + LEAST))) / (s + 0.3 * first[i] + LEAST) ** 2
-        gradient = np.stack([2 * error * s, 2 * (a - true_above[i]) * a * (1 - a)], 1) / batch
-        network.step(gradient.astype(np.float32), np.float32(rate * 0.5 * (1 + np.cos(np.pi * step / steps)) + 1e-5))
-    return network
+        parameters, state = step(parameters, state, *(v[i] for v in data))
+    return [(np.asarray(w, np.float64), np.asarray(b, np.float64)) for w, b in parameters]
 
 
-def report(name, d, rows, network):
-    """Bias of each sky's mean: of the light of the sun, and of the share from above."""
+def predicted(parameters, d):
     sun, above = closed_form(d)
-    s, a = predicted(network, inputs(d), sun, above)
-    s += peaks(d)
+    s, a = corrected(np.asarray(network(parameters, inputs(d))), sun, above)
+    return np.asarray(s) + peaks(d), np.asarray(a)
+
+
+def report(name, d, rows, parameters):
+    """Bias of each sky's mean: of the light of the sun, and of the share from above."""
+    sun = closed_form(d)[0]
+    s, a = predicted(parameters, d)
     sky = d["sky"].astype(int)
     rows = rows[d["cos_sun"][rows] < 0.93]  # nearer to the sun the noise is larger than the errors
     before, after, shares, noise = [], [], [], []
@@ -156,7 +151,7 @@ def report(name, d, rows, network):
           f"{np.mean(before):+.3f}, {np.mean(after):+.3f}; share from above, rms {np.sqrt(np.mean(np.square(shares))):.3f}")
 
 
-def glsl(network, note):
+def glsl(parameters, note):
     def number(v):
         text = f"{v:.4g}"
         return text + ("f" if "." in text or "e" in text else ".0f")
@@ -168,20 +163,19 @@ def glsl(network, note):
         return "vec4(" + ", ".join(number(v) for v in b) + ")"
 
     lines = []
-    for name, source, w, b in (("a", "x", network.weights[0], network.biases[0]),
-                               ("b", "a", network.weights[1], network.biases[1])):
+    for name, source, w, b in (("a", "x", *parameters[0]), ("b", "a", *parameters[1])):
         for k in range(WIDTH // 4):
             columns = slice(4 * k, 4 * k + 4)
             terms = [f"{matrix(w[4 * j:4 * j + 4, columns])} * {source}{j}" for j in range(len(w) // 4)]
             lines.append(f"  vec4 {name}{k} = " + " +\n            ".join(terms + [vector(b[columns])]) + ";")
         lines += [f"  {name}{k} /= 1.0f + abs({name}{k});" for k in range(WIDTH // 4)]
-    out = [" + ".join([f"dot({vector(network.weights[2][4 * j:4 * j + 4, c])}, b{j})" for j in range(WIDTH // 4)] +
-                      [number(network.biases[2][c])]) for c in (0, 1)]
+    out = [" + ".join([f"dot({vector(parameters[2][0][4 * j:4 * j + 4, c])}, b{j})" for j in range(WIDTH // 4)] +
+                      [number(parameters[2][1][c])]) for c in (0, 1)]
     lines.append(f"  return vec2({out[0]},\n              {out[1]});")
     body = "\n".join(lines)
     return f"""// SPDX-License-Identifier: Apache-2.0
 // Written by tools/fit_cloud_light.py, which says what it is; {note}.
-WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2, vec4 x3, vec4 x4) {{
+WELKIN_FN vec2 cloudLightFit(vec4 x0, vec4 x1, vec4 x2, vec4 x3, vec4 x4, vec4 x5) {{
 {body}
 }}
 """
@@ -198,13 +192,13 @@ def main():
     every = np.arange(len(d["sun"]))
     held_back = d["sky"].astype(int) % 6 == 0
     skies = len(np.unique(d["sky"]))
-    network = fit(d, every[~held_back], args.steps, args.seed)
-    report("seen", d, every[~held_back], network)
-    report("held back", d, every[held_back], network)
+    parameters = fit(d, every[~held_back], args.steps, args.seed)
+    report("seen", d, every[~held_back], parameters)
+    report("held back", d, every[held_back], parameters)
     if args.write:
-        network = fit(d, every, args.steps, args.seed)
+        parameters = fit(d, every, args.steps, args.seed)
         with open(args.write, "w", encoding="utf-8") as out:
-            out.write(glsl(network, f"from {len(every)} points in {skies} skies"))
+            out.write(glsl(parameters, f"from {len(every)} points in {skies} skies"))
 
 
 if __name__ == "__main__":

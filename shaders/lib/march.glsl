@@ -228,7 +228,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     float share = state.transmittance * (1.0 - through);
     state.luminance += share * cloudSource(band, p, q, point, detail, phases,
                                            CloudView(cosSun, dir.z, -log(state.transmittance), t,
-                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir)), dir, dither.y);
+                                                     cloudDepthsAt(uLightVolume, q + kBehindM * dir),
+                                                     CloudFluence(fluenceAt(q), fluenceAt(q + kAheadM * dir))),
+                                           dir, dither.y);
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;

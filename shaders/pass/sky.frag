@@ -13,6 +13,7 @@
 #include "lib/cloud_light_fit.glsl"
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
+#include "lib/fluence.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
 #include "lib/sheet_surface.glsl"

@@ -12,7 +12,8 @@ namespace {
 constexpr int kSide = shading::LightVolumeLayout::kColumns;
 constexpr int kMostSamples = 6;  // of density along the line between two slices
 // A slice on the way down samples density, on the way up only textures.
-constexpr float kCostDown = 4.0f, kCostUp = 1.0f;
+// A step of the fluence is about as much as the latter.
+constexpr float kCostDown = 4.0f, kCostUp = 1.0f, kCostSpread = 1.0f;
 
 }  // namespace
 
@@ -24,21 +25,33 @@ LightVolumePass::LightVolumePass() : down_(fullscreenProgram("pass/light_volume_
 }
 
 void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
-                           const CloudTextures& clouds) {
-  begin(shading::cloudUniforms(state), layout);
+                           const CloudTextures& clouds, Spread spread) {
+  begin(shading::cloudUniforms(state), layout, spread);
   advance(kParts, clouds);
 }
 
-int LightVolumePass::steps() const {
+int LightVolumePass::sweeps() const {
   return 2 * static_cast<int>(layout_.heightsM.size() * layout_.kHalfM.size());
 }
 
+int LightVolumePass::steps() const {
+  return sweeps() + (spread_ == Spread::kYes ? fluence_.steps() : 0);
+}
+
+float LightVolumePass::costOfAll() const {
+  float sum = 0.5f * (kCostDown + kCostUp) * static_cast<float>(sweeps());
+  for (int i = sweeps(); i < steps(); ++i) sum += cost(i);
+  return sum;
+}
+
 float LightVolumePass::cost(int step) const {
+  if (step >= sweeps()) return kCostSpread;
   const int slices = static_cast<int>(layout_.heightsM.size());
   return step % (2 * slices) < slices ? kCostDown : kCostUp;
 }
 
-void LightVolumePass::begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout) {
+void LightVolumePass::begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout,
+                            Spread spread) {
   const bool same = layout.bands == layout_.bands && upOfBand_.size() == layout.bands.size();
   layout_ = layout;
   const int cascades = static_cast<int>(layout.kHalfM.size());
@@ -59,6 +72,8 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
     up->set("uLine", layout.line);
   }
   down_.set("uLine", layout.line);
+  spread_ = spread;
+  if (spread == Spread::kYes) fluence_.begin(layout);
   step_ = 0;
   credit_ = 0.0f;
   if (steps() == 0) front_ = 1 - front_;  // a clear sky: nothing asks for the volume
@@ -66,14 +81,21 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
 
 bool LightVolumePass::advance(int parts, const CloudTextures& clouds) {
   if (!inProgress()) return false;
-  credit_ += static_cast<float>(parts) / kParts * 0.5f * (kCostDown + kCostUp) * static_cast<float>(steps());
+  credit_ += static_cast<float>(parts) / kParts * costOfAll();
   for (; inProgress() && credit_ > 0.0f; ++step_) {
-    sweepStep(step_, clouds);
+    step(step_, clouds);
     credit_ -= cost(step_);
   }
   if (inProgress()) return false;
   front_ = 1 - front_;
   return true;
+}
+
+void LightVolumePass::step(int step, const CloudTextures& clouds) {
+  if (step < sweeps())
+    sweepStep(step, clouds);
+  else
+    fluence_.step(step - sweeps(), volumes_[1 - front_]);
 }
 
 void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fills the light volume: optical depths towards and away from the sun, up and down, on slices around the eye
 // (shaders/lib/light_volume.glsl says how it is laid out). Slices are swept from the top down and then from
-// the bottom up, each from its neighbour.
+// the bottom up, each from its neighbour. Then the fluence by what was swept (lib/fluence.glsl).
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include "welkin/gpu/program.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/fluence_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/shading/uniforms.h"
 
@@ -21,23 +22,30 @@ class LightVolumePass {
  public:
   LightVolumePass();
 
-  // Sweeps the volume of a sky. Keeps its textures for the next sky of the same number of slices.
+  // Sweeps the volume of a sky. Keeps its textures for the next sky of the same number of slices. Pictures
+  // that are lit by others' approximations ask for no fluence.
+  enum class Spread { kNo, kYes };
   void draw(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
-            const CloudTextures& clouds);
+            const CloudTextures& clouds, Spread spread = Spread::kYes);
 
   // The same a few slices at a time, for frame loops: begin(), then advance() until it returns true. Until
   // then volume() is what was swept before. clouds: the layers, shading::cloudUniforms() or what has changed
   // of them. After the first volume of a layout nothing is compiled or allocated.
-  void begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout);
+  void begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout,
+             Spread spread = Spread::kYes);
   bool advance(int parts, const CloudTextures& clouds);  // about `parts` of kParts
   bool inProgress() const { return step_ < steps(); }
   static constexpr int kParts = 256;
 
   const gpu::Texture3D& volume() const { return volumes_[front_]; }
+  const gpu::Texture3D& fluence() const { return fluence_.fluence(); }
 
  private:
+  int sweeps() const;  // slices, down and up
   int steps() const;
+  void step(int step, const CloudTextures& clouds);
   void sweepStep(int step, const CloudTextures& clouds);
+  float costOfAll() const;
   float cost(int step) const;
 
   gpu::FullscreenTriangle triangle_;
@@ -51,6 +59,8 @@ class LightVolumePass {
   gpu::Texture3D upward_;  // what the first sweep found
   std::array<gpu::Texture3D, 2> volumes_;
   std::size_t front_ = 0;
+  FluencePass fluence_;
+  Spread spread_ = Spread::kYes;
   shading::LightVolumeLayout layout_;  // being swept
   int step_ = 0;
   float credit_ = 0.0f;  // of steps, not yet used

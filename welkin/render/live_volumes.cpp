@@ -108,6 +108,7 @@ void LiveVolumes::setScene(gpu::Program& p, const scene::SkyState& state) const 
   setUniforms(p, shading::cloudUniforms(state));
   setUniforms(p, shading::marchUniforms(shading::marchSettings(state.scene.output.quality)));
   setUniforms(p, shading::lightVolumeUniforms(layout_));
+  setUniforms(p, shading::fluenceUniforms(shading::fluenceLayout(layout_)));
 }
 
 void LiveVolumes::update(const shading::Uniforms& skyUniforms) {
@@ -183,6 +184,7 @@ void LiveVolumes::setLight(gpu::Program& p, const scene::SkyState& state,
   p.set("uLine", light_->line);
   p.set("uLineTowardsSun", light_->towardsSun ? 1.0f : 0.0f);
   p.bind("uLightVolume", lightVolume_.volume());
+  p.bind("uFluence", lightVolume_.fluence());
 }
 
 void LiveVolumes::setSheets(gpu::Program& p, const scene::SkyState& state,

@@ -22,6 +22,7 @@
 #include "welkin/render/sky_splats.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/shading/ball_volume.h"
+#include "welkin/shading/fluence_layout.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/shading/view.h"
@@ -137,6 +138,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   setUniforms(p, shading::skyUniforms(state));
   setUniforms(p, shading::marchUniforms(settings));
   setUniforms(p, shading::lightVolumeUniforms(layout));
+  setUniforms(p, shading::fluenceUniforms(shading::fluenceLayout(layout)));
   if (!sheets.empty()) sheets.set(p, state, layout);
   if (!splats.empty()) splats.draw(state, tables, p);
   return p;
@@ -146,6 +148,7 @@ void SkyRenderer::Impl::bind(gpu::Program& p) {
   clouds->bind(p);
   tables.bind(p);
   p.bind("uLightVolume", lightVolume.volume());
+  p.bind("uFluence", lightVolume.fluence());
   sheets.bind(p);
   if (!splats.empty()) splats.bind(p);
   if (box) box->bind(p);
@@ -166,7 +169,9 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   std::optional<glm::vec2> ballsM;
   if (!balls.empty()) ballsM = glm::vec2(std::max(balls.lowM, 0.0f), balls.highM);
   const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state, ballsM);
-  lightVolume.draw(state, layout, *clouds);
+  lightVolume.draw(
+      state, layout, *clouds,
+      cloudLight == CloudLight::kFull ? LightVolumePass::Spread::kYes : LightVolumePass::Spread::kNo);
   done("light volume");
 
   shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);

@@ -38,8 +38,13 @@ void forEachPoint(F&& f) {
               for (const float distanceM : {0.0f, 3e3f, 2e5f})
                 for (const float behind : {0.0f, 30.0f})
                   f(CloudDepths{toSun, fromSun, up, 10.0f},
-                    CloudView{c, 0.3f, toEye, distanceM, {behind, fromSun, behind, 5.0f}}, behind / 30.0f,
-                    sunHeight);
+                    CloudView{c,
+                              0.3f,
+                              toEye,
+                              distanceM,
+                              {behind, fromSun, behind, 5.0f},
+                              {0.2f * fromSun / (1.0f + toSun), 0.05f * behind}},
+                    behind / 30.0f, sunHeight);
 }
 
 TEST(CloudScattering, IsFiniteAndNeitherMakesNorTakesLightOfTheSky) {
@@ -77,9 +82,10 @@ TEST(CloudScattering, ThinCloudScattersOnce) {
   for (const float c : {-1.0f, 0.0f, 0.7f, 0.95f}) {
     const float phase = phaseHenyeyGreenstein(c, 0.85f);
     const CloudDepths wisp{1e-4f, 1e-4f, 1e-4f, 1e-4f};
-    EXPECT_NEAR(
-        cloudScattering(wisp, {c, 0.2f, 0.0f, 3e3f, wisp}, placeOf(0.0f, 0.5f), {phase, kPeak}, 0.6f).sun,
-        phase, 0.01f * phase + 5e-4f)
+    EXPECT_NEAR(cloudScattering(wisp, {c, 0.2f, 0.0f, 3e3f, wisp, {0.01f, 0.01f}}, placeOf(0.0f, 0.5f),
+                                {phase, kPeak}, 0.6f)
+                    .sun,
+                phase, 0.01f * phase + 5e-4f)
         << c;
   }
 }
@@ -90,8 +96,9 @@ TEST(CloudScattering, ThickDecksAreDarkBeneath) {
   float lastSun = 1e9f, lastSky = 1.0f;
   for (const float tau : {8.0f, 16.0f, 32.0f, 64.0f, 128.0f}) {
     const CloudDepths d{tau / 0.7f, 0.5f, tau, 0.4f};
-    const CloudScattering s =
-        cloudScattering(d, {0.4f, 0.5f, 0.4f, 2000.0f, d}, placeOf(0.0f, 1.0f), {0.01f, kPeak}, 0.7f);
+    const float fluence = 2.0f / (1.3f + 0.14f * tau);  // beneath a slab
+    const CloudScattering s = cloudScattering(d, {0.4f, 0.5f, 0.4f, 2000.0f, d, {fluence, fluence}},
+                                              placeOf(0.0f, 1.0f), {0.01f, kPeak}, 0.7f);
     EXPECT_LT(s.sun, lastSun) << tau;
     EXPECT_LT(s.shares.x, lastSky) << tau;
     lastSun = s.sun;

@@ -29,6 +29,7 @@ struct Swept {
     static LightVolumePass pass;
     pass.draw(state, layout, CloudTextures(state.clouds->sharedNoise()));
     texels = pass.volume().read();
+    fluence = pass.fluence().read();
     for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
   }
 
@@ -58,7 +59,7 @@ struct Swept {
 
   scene::SkyState state;
   shading::LightVolumeLayout layout;
-  Volume<float> texels;
+  Volume<float> texels, fluence;
 };
 
 // Pairs of (volume, ray) at columns spread over the inner half of the nearest cascade.
@@ -151,6 +152,7 @@ TEST(LightVolume, IsFiniteForEverySun) {
                                       [](float v) { return std::isfinite(v) && v >= 0.0f; });
     EXPECT_TRUE(bad == s.texels.data.end()) << sun << ": " << *bad;
     EXPECT_GT(*std::max_element(s.texels.data.begin(), s.texels.data.end()), 0.5f) << sun;
+    for (const float f : s.fluence.data) ASSERT_TRUE(f >= 0.0f && f < 8.0f) << sun << ": " << f;
   }
 }
 
@@ -174,15 +176,17 @@ TEST(LightVolume, InPartsItIsTheSame) {
   const CloudTextures clouds(whole.state.clouds->sharedNoise());
   LightVolumePass pass;
   pass.draw(scene::buildSky(scene, 500.0, &whole.state), whole.layout, clouds);
-  const auto before = pass.volume().read().data;
+  const auto before = pass.volume().read().data, fluenceBefore = pass.fluence().read().data;
   pass.begin(shading::cloudUniforms(whole.state), whole.layout);
   int frames = 1;
   for (; !pass.advance(LightVolumePass::kParts / 16, clouds); ++frames) {
     ASSERT_TRUE(pass.inProgress());
     EXPECT_EQ(pass.volume().read().data, before);
+    EXPECT_EQ(pass.fluence().read().data, fluenceBefore);
   }
   EXPECT_NEAR(frames, 16, 1);
   EXPECT_EQ(pass.volume().read().data, whole.texels.data);
+  EXPECT_EQ(pass.fluence().read().data, whole.fluence.data);
   EXPECT_FALSE(pass.inProgress());
   for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
 }
