@@ -21,7 +21,8 @@ vec4 depthsAt(vec2 uv, float slice) {
 void main() {
   float cells[16];
   for (int k = 0; k < 16; ++k) cells[k] = 0.0;
-  // Of four columns of the light volume the mean.
+#ifdef WELKIN_SOURCES
+  // Of four columns of the light volume the mean: dense ones shade themselves.
   for (int column = 0; column < 4; ++column) {
     vec2 uv = (2.0 * floor(gl_FragCoord.xy) + vec2(column & 1, column >> 1) + 0.5) / vec2(textureSize(uLightVolume, 0));
     vec4 above = vec4(0.0);
@@ -29,16 +30,19 @@ void main() {
       bool adjoins = k > 0 && uCells[k].x == uCells[max(k - 1, 0)].y;
       vec4 below = adjoins ? above : depthsAt(uv, uCells[k].x);
       above = depthsAt(uv, uCells[k].y);
-      float scattered = 0.25 * kSimilarity * max(below.y - above.y, 0.0);
-#ifdef WELKIN_SOURCES
       // The mean between the two edges.
       vec2 toSun = kSimilarity * (uLineTowardsSun > 0.5 ? vec2(below.x, above.x) : vec2(below.z, above.z));
       float between = toSun.x - toSun.y;
-      scattered *= abs(between) > 0.01 ? (exp(-toSun.y) - exp(-toSun.x)) / between : exp(-toSun.y);
-#endif
-      cells[k] += scattered;
+      float lit = abs(between) > 0.01 ? (exp(-toSun.y) - exp(-toSun.x)) / between : exp(-toSun.y);
+      cells[k] += 0.25 * kSimilarity * max(below.y - above.y, 0.0) * lit;
     }
   }
+#else
+  // Between four columns: their mean.
+  vec2 uv = 2.0 * gl_FragCoord.xy / vec2(textureSize(uLightVolume, 0));
+  for (int k = 0; k < WELKIN_CELLS; ++k)
+    cells[k] = kSimilarity * max(depthsAt(uv, uCells[k].x).y - depthsAt(uv, uCells[k].y).y, 0.0);
+#endif
   outCells[0] = vec4(cells[0], cells[1], cells[2], cells[3]);
   outCells[1] = vec4(cells[4], cells[5], cells[6], cells[7]);
   outCells[2] = vec4(cells[8], cells[9], cells[10], cells[11]);

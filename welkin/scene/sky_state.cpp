@@ -138,6 +138,15 @@ void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const
   a.belowHigh = highAir + shade + hemisphere(high * a.ground, -1.0f);
 }
 
+// Illuminance by the sky of a level plane at a height above the ground, lux; highM: that of the highest
+// known.
+glm::vec3 skyAt(const AmbientLight& a, double heightM, double highM) {
+  const glm::vec3 ground = a.above.along[2], low = a.aboveLow.along[2], high = a.aboveHigh.along[2];
+  const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
+  if (heightM < ClearSkyKey::kLowM) return glm::mix(ground, low, share(heightM / ClearSkyKey::kLowM));
+  return glm::mix(low, high, share((heightM - ClearSkyKey::kLowM) / (highM - ClearSkyKey::kLowM)));
+}
+
 AmbientLight ambientLight(const SkyState& s) {
   AmbientLight a;
   const sky::Atmosphere& atmosphere = *s.atmosphere;
@@ -166,22 +175,27 @@ AmbientLight ambientLight(const SkyState& s) {
              scatteredDown = static_cast<float>(shade.scatteredDown()),
              through = static_cast<float>(shade.diffuse), aside = static_cast<float>(shade.aside);
   const glm::vec3 albedo(s.scene.ground.albedo);
-  a.skyOnGround = skyOnGround * through + onClouds * scatteredDown;
+  // What goes through clouds fell on them where the sky is darker and less blue than at the ground.
+  const double ground = atmosphere.groundAltitudeM();
+  const glm::vec3 skyOnClouds = skyAt(a, shade.lightM, highAltitude(ground) - ground);
+  const float gaps = std::min(1.0f - cover, through);
+  const glm::vec3 skyThrough = skyOnGround * gaps + skyOnClouds * (through - gaps);
+  a.skyOnGround = skyThrough + onClouds * scatteredDown;
   a.ground = albedo / pi * (a.skyOnGround + direct * (1.0f - taken));
   // Clouds are whiter than the ground, and what they send up the air sends down again, most of it blue.
   const glm::vec3 bare = albedo / pi * (skyOnGround + direct);
   const glm::vec3 upward =
-      (onClouds * (1.0f - passes) + skyOnGround * (1.0f - through)) / pi + a.ground * (1.0f - cover);
+      (onClouds * (1.0f - passes) + skyOnClouds * (1.0f - through)) / pi + a.ground * (1.0f - cover);
   const auto sentBack = [&](double altitudeM) {
     return atmosphere.sphericalAlbedo(altitudeM) * (upward - bare);
   };
-  const double ground = atmosphere.groundAltitudeM();
   const glm::vec3 moreOnGround = pi * sentBack(ground);
+  const glm::vec3 moreThrough = moreOnGround * gaps + pi * sentBack(ground + shade.lightM) * (through - gaps);
   a.above = a.above + hemisphere(sentBack(ground), 1.0f);
   a.aboveLow = a.aboveLow + hemisphere(sentBack(ground + ClearSkyKey::kLowM), 1.0f);
   a.aboveHigh = a.aboveHigh + hemisphere(sentBack(highAltitude(ground)), 1.0f);
-  a.skyOnGround += moreOnGround * through;
-  a.ground += albedo / pi * moreOnGround * through;
+  a.skyOnGround += moreThrough;
+  a.ground += albedo / pi * moreThrough;
   // From above the clouds most of the air in view is sunlit.
   const double eyeM = s.scene.camera.eyeM;
   a.clearAir = shade.any && eyeM < shade.lowM + 200.0 ? 1.0f - cover : 1.0f;
@@ -194,7 +208,7 @@ AmbientLight ambientLight(const SkyState& s) {
   // counts half.
   const float fromAllSides = 0.5f * (scatteredDown + std::min(scatteredDown, 1.0f - passes));
   const glm::vec3 under =
-      hazeLuminance((skyOnGround + moreOnGround) * through + onClouds * (aside * fromAllSides), a.ground);
+      hazeLuminance(skyThrough + moreThrough + onClouds * (aside * fromAllSides), a.ground);
   const glm::vec3 none = hazeLuminance(skyOnGround, bare);
   a.haze = glm::mix(under, over, above);
   a.cloudGlow = glm::max(a.haze - none, glm::vec3(0.0f));
