@@ -50,9 +50,9 @@ void main() {
   float below = 1.0 / (0.5 * uCells[0].z / d[0] + kEdge);
   float belowShare = 0.0, belowComing = 0.0;
   for (int k = 0; k < WELKIN_CELLS; ++k) {
-    float half0 = 0.5 * uCells[k].z / d[k];
-    float above = k + 1 < WELKIN_CELLS ? 1.0 / (half0 + 0.5 * uCells[min(k + 1, WELKIN_CELLS - 1)].z / d[min(k + 1, WELKIN_CELLS - 1)])
-                                       : 1.0 / (half0 + kEdge);
+    float resistance = 0.5 * uCells[k].z / d[k];
+    float above = k + 1 < WELKIN_CELLS ? 1.0 / (resistance + 0.5 * uCells[min(k + 1, WELKIN_CELLS - 1)].z / d[min(k + 1, WELKIN_CELLS - 1)])
+                                       : 1.0 / (resistance + kEdge);
     float all = leaving[k] + below * (1.0 - belowShare) + above;
     coming[k] = (coming[k] + below * belowComing) / all;
     belowShare = k + 1 < WELKIN_CELLS ? above / all : 0.0;

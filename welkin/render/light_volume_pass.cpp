@@ -39,9 +39,8 @@ int LightVolumePass::steps() const {
 }
 
 float LightVolumePass::costOfAll() const {
-  float sum = 0.5f * (kCostDown + kCostUp) * static_cast<float>(sweeps());
-  for (int i = sweeps(); i < steps(); ++i) sum += cost(i);
-  return sum;
+  return 0.5f * (kCostDown + kCostUp) * static_cast<float>(sweeps()) +
+         kCostSpread * static_cast<float>(steps() - sweeps());
 }
 
 float LightVolumePass::cost(int step) const {
