@@ -152,9 +152,9 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
     middleLit = farLit;
     middleThrough = farThrough;
   }
-  column.luminance += cloudsThroughAir(state.luminance, state.weight - bySheets, middleThrough);
-  column.luminance += before * max(airBetween(nearLit, nearThrough, middleLit, middleThrough, lit, glow), 0.0);
-  column.luminance += state.transmittance * max(airBetween(middleLit, middleThrough, farLit, farThrough, lit, glow), 0.0);
+  column.luminance += cloudsThroughAir(ray.dir, state.luminance, state.weight - bySheets, middleThrough);
+  column.luminance += before * max(airBetween(ray.dir, nearLit, nearThrough, middleLit, middleThrough, lit, glow), 0.0);
+  column.luminance += state.transmittance * max(airBetween(ray.dir, middleLit, middleThrough, farLit, farThrough, lit, glow), 0.0);
   column.clouds = state.transmittance;
   return AirSlice(min(uScale * column.luminance, kHalfMost), column.clouds * farThrough);
 }

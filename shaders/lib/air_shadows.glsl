@@ -36,7 +36,18 @@ float litAir(vec3 dir, float distanceM, vec3 through) {
 // As aerial(), with these shadows.
 void aerialShaded(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   aerialLit(dir, distanceM, inscatter, through);
-  inscatter = shadedAir(inscatter, through, litAir(dir, distanceM, through));
+  inscatter = shadedAir(dir, inscatter, through, litAir(dir, distanceM, through));
+}
+
+// Light of clouds as it arrives through air, of what they hide. Haze scatters mostly forward: a part of what it takes from a ray is as if it had
+// not been turned, for there is cloud about the ray too. In the place of that is the light about the eye that the air has been given. Not so
+// what clouds themselves have turned by little, about the sun: the air in their shade has that as sunlight (litAirAt()).
+const float kHazeForward = 0.4;
+const float kTurned = 0.2;        // 1/sr: of what a cloud turns with a larger share than this, this much
+vec3 cloudsThroughAir(vec3 dir, vec3 luminance, float hidden, vec3 through) {
+  float red = max(through.x, 1e-4);  // haze takes as much of all colours, molecules little of red
+  float turned = min(kTurned / phaseHenyeyGreenstein(dot(dir, uKeyDirection), kDropletAsymmetry), 1.0);
+  return luminance * through + turned * (pow(red, -kHazeForward) - 1.0) * through * (luminance - hidden * lightTowards(uHaze, dir));
 }
 
 // What they take from the clear sky behind all clouds, for an eye beneath their tops.
@@ -47,5 +58,5 @@ vec3 shadowsInSky(vec3 dir) {
   float distanceM = sphereCrossings(topM, dir.z).y;
   vec3 lit, through;
   aerialLit(dir, distanceM, lit, through);
-  return lit - shadedAir(lit, through, litAir(dir, distanceM, through));
+  return lit - shadedAir(dir, lit, through, litAir(dir, distanceM, through));
 }

@@ -24,8 +24,8 @@ uniform sampler3D uAerialInscatter;
 uniform sampler3D uAerialTransmittance;
 uniform float uClearAir;          // share of the lower air that the sun reaches
 uniform float uAirUnderSheets;    // of what thin sheets alone leave, the share of it
-uniform vec3 uHazeLuminance;      // mean luminance about the eye where it does not: what hazy air there tends to
-uniform vec3 uCloudGlow;          // by how much clouds make it brighter than it is without them
+uniform LightMoments uHaze;       // luminance that hazy air about the eye tends to where it does not: lightTowards()
+uniform LightMoments uCloudGlow;  // by how much clouds make it brighter than it is without them
 
 // The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
 // day over some clouds and dusk over others.
@@ -46,26 +46,25 @@ void aerialLit(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) 
                    distanceM, inscatter, through);
 }
 
-// What it adds between two distances where the sun reaches a share of it: air in the shade of clouds is lit from all sides alike; in the sun,
-// a share of it (glow) has the light of the clouds too.
-vec3 airBetween(vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow) {
-  vec3 scattered = nearThrough - farThrough;
-  return mix(scattered * uHazeLuminance, farLit - nearLit + scattered * (glow * uCloudGlow), lit);
+// What air that scatters forward adds in a direction. x: the mean over all directions, yzw: what is linear in them.
+vec3 lightTowards(LightMoments light, vec3 dir) {
+  vec4 w = vec4(1.0, dir);
+  vec3 mean = vec3(light.red.x, light.green.x, light.blue.x);
+  return max(vec3(dot(light.red, w), dot(light.green, w), dot(light.blue, w)), 0.2 * mean);
 }
-vec3 shadedAir(vec3 inscatter, vec3 through, float lit) { return airBetween(vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0); }
+
+// What it adds between two distances where the sun reaches a share of it: air in the shade of clouds has the light about it alone; in the sun,
+// a share of it (glow) has the light of the clouds too.
+vec3 airBetween(vec3 dir, vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow) {
+  vec3 scattered = nearThrough - farThrough;
+  return mix(scattered * lightTowards(uHaze, dir), farLit - nearLit + scattered * (glow * lightTowards(uCloudGlow, dir)), lit);
+}
+vec3 shadedAir(vec3 dir, vec3 inscatter, vec3 through, float lit) { return airBetween(dir, vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0); }
 
 // The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   aerialLit(dir, distanceM, inscatter, through);
-  inscatter = shadedAir(inscatter, through, uClearAir);
-}
-
-// Light of clouds as it arrives through air, of what they hide. Haze scatters mostly forward: a part of what it takes from a ray is as if it had
-// not been turned, for there is cloud about the ray too. In the place of that is the mean light about the eye that the air has been given.
-const float kHazeForward = 0.3;
-vec3 cloudsThroughAir(vec3 luminance, float hidden, vec3 through) {
-  float red = max(through.x, 1e-4);  // haze takes as much of all colours, molecules little of red
-  return luminance * through + (pow(red, -kHazeForward) - 1.0) * through * (luminance - hidden * uHazeLuminance);
+  inscatter = shadedAir(dir, inscatter, through, uClearAir);
 }
 
 // Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.

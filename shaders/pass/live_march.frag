@@ -59,7 +59,7 @@ void main() {
   if (hidden > 0.0001) {
     vec3 inscatter, through;
     aerialShaded(dir, ray.depthM, inscatter, through);
-    color += cloudsThroughAir(ray.luminance, hidden, through) + inscatter * hidden;
+    color += cloudsThroughAir(dir, ray.luminance, hidden, through) + inscatter * hidden;
   }
   outCloud = vec4(color, ray.transmittance);
   outDepth = vec4(depthM, 0.0, 0.0, 1.0);

@@ -72,14 +72,14 @@ void main() {
   if (ray.hidden > 0.0001) {
     vec3 inscatter, through;
     aerialShaded(dir, ray.depthM, inscatter, through);
-    color += cloudsThroughAir(ray.luminance, ray.hidden, through) + inscatter * ray.hidden;
+    color += cloudsThroughAir(dir, ray.luminance, ray.hidden, through) + inscatter * ray.hidden;
   }
 #else
   if (ray.transmittance < 0.9999) {
     vec3 inscatter, through;
     aerialShaded(dir, ray.depthM, inscatter, through);
     float hidden = 1.0 - ray.transmittance;
-    color += cloudsThroughAir(ray.luminance, hidden, through) + inscatter * hidden;
+    color += cloudsThroughAir(dir, ray.luminance, hidden, through) + inscatter * hidden;
   }
 #endif
   outColor = vec4(color, 1.0);

@@ -121,6 +121,30 @@ sky::LightMoments hemisphere(const glm::vec3& luminance, float side) {
   return {2.0f * pi * luminance, {glm::vec3(0.0f), glm::vec3(0.0f), side * pi * luminance}};
 }
 
+// What hazy air makes of the light about it. It scatters forward; what goes on nearly as it came is taken for
+// light that was not scattered (shaders/lib/air_shadows.glsl), and of the rest this is the mean cosine.
+constexpr float kHazeScatters = 0.93f;  // of what it takes from a ray
+constexpr float kHazeAsymmetry = 0.4f;
+AirLight airLight(const sky::LightMoments& about) {
+  const float mean = kHazeScatters / static_cast<float>(4.0 * kPi), along = 3.0f * kHazeAsymmetry * mean;
+  return {mean * about.total, {along * about.along[0], along * about.along[1], along * about.along[2]}};
+}
+
+// Of the clear sky, what comes overhead and what comes level; the sky about the sun makes most of that.
+sky::LightMoments throughGaps(const sky::LightMoments& clear, float overhead, float level) {
+  return {overhead * clear.total, {level * clear.along[0], level * clear.along[1], overhead * clear.along[2]}};
+}
+
+// Light that clouds let through to a level plane, lux: they are darker towards the horizon (P. Moon and D. E.
+// Spencer 1942, "Illumination from a Non-Uniform Sky": by that there is 6/7 of the light of an even sky on a
+// small ball), where they are closed.
+sky::LightMoments fromClouds(const glm::vec3& illuminance) {
+  return {2.0f * 0.9f * illuminance, {glm::vec3(0.0f), glm::vec3(0.0f), illuminance}};
+}
+// How much of the sun's light that clouds have scattered still goes on level, for each unit of what falls on
+// a level plane: of twice that, a fifth.
+constexpr float kOnwards = 0.4f;
+
 // Fills in below and belowHigh: the air that clouds see beneath them, a share of it shaded by them, and the
 // ground through it.
 void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const sky::LightMoments& highAir,
@@ -133,7 +157,7 @@ void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const
     return here / glm::max(s.atmosphere->transmittanceToSpace(altitudeM, kMeanCosine), glm::vec3(1e-6f));
   };
   const glm::vec3 low = through(ground + ClearSkyKey::kLowM), high = through(highAltitude(ground));
-  const sky::LightMoments shade = shaded * (hemisphere((1.0f - low) * a.haze, -1.0f) + -1.0f * lowAir);
+  const sky::LightMoments shade = shaded * (hemisphere((1.0f - low) * a.haze.mean, -1.0f) + -1.0f * lowAir);
   a.below = lowAir + shade + hemisphere(low * a.ground, -1.0f);
   a.belowHigh = highAir + shade + hemisphere(high * a.ground, -1.0f);
 }
@@ -159,7 +183,8 @@ AmbientLight ambientLight(const SkyState& s) {
   a.above = now(before.ground, after.ground);
   a.aboveLow = now(before.low, after.low);
   a.aboveHigh = now(before.high, after.high);
-  const glm::vec3 skyOnGround = a.above.along[2];
+  const sky::LightMoments clear = a.above;
+  const glm::vec3 skyOnGround = clear.along[2];
   a.skyLow = skyOnGround / pi;
   a.skyHigh = a.aboveHigh.along[2] / pi;
   const CloudShade shade =
@@ -203,15 +228,19 @@ AmbientLight ambientLight(const SkyState& s) {
   // ground. What they turn by a few degrees only lights the air as it did before.
   const float above = static_cast<float>(
       shade.any ? std::clamp((eyeM - shade.lowM) / std::max(shade.highM - shade.lowM, 1.0), 0.0, 1.0) : 0.0);
-  const glm::vec3 over = hazeLuminance(skyOnGround + moreOnGround, upward);
+  const sky::LightMoments over = clear + hemisphere(moreOnGround / pi, 1.0f) + hemisphere(upward, -1.0f);
   // Broken clouds send as much down as up from all sides; the rest goes on downwards much as it came, and
   // counts half.
   const float fromAllSides = 0.5f * (scatteredDown + std::min(scatteredDown, 1.0f - passes));
-  const glm::vec3 under =
-      hazeLuminance(skyThrough + moreThrough + onClouds * (aside * fromAllSides), a.ground);
-  const glm::vec3 none = hazeLuminance(skyOnGround, bare);
-  a.haze = glm::mix(under, over, above);
-  a.cloudGlow = glm::max(a.haze - none, glm::vec3(0.0f));
+  sky::LightMoments under = throughGaps(clear, gaps, 1.0f - taken) + hemisphere(moreThrough / pi, 1.0f) +
+                            hemisphere(a.ground, -1.0f) +
+                            fromClouds(skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides));
+  for (int i = 0; i < 2; ++i)
+    under.along[i] += kOnwards * s.lights[0].direction[i] * (aside * scatteredDown) * onClouds;
+  const AirLight none = airLight(clear + hemisphere(bare, -1.0f));
+  a.haze = airLight((1.0f - above) * under + above * over);
+  a.cloudGlow.mean = glm::max(a.haze.mean - none.mean, glm::vec3(0.0f));
+  for (int i = 0; i < 3; ++i) a.cloudGlow.along[i] = a.haze.along[i] - none.along[i];
   // Under a low sun nearly all of it is in their shade.
   addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), taken * aside,
                     a);
@@ -236,6 +265,10 @@ double headingOf(const SkyState& s) {
 }
 
 }  // namespace
+
+AirLight operator*(const glm::vec3& share, const AirLight& light) {
+  return {share * light.mean, {share * light.along[0], share * light.along[1], share * light.along[2]}};
+}
 
 SkyLights lightsAt(const Scene& scene, double secondsAfter) {
   SkyLights l;

@@ -20,6 +20,13 @@
 
 namespace welkin::scene {
 
+// Luminance that hazy air tends to, cd/m2, by the direction in which one looks.
+struct AirLight {
+  glm::vec3 mean{0};                 // over all directions
+  std::array<glm::vec3, 3> along{};  // more of it for each unit of the direction's east, north and up
+};
+AirLight operator*(const glm::vec3& share, const AirLight& light);
+
 // Light that reaches clouds and ground from all directions at once, past the layers that are drawn as
 // volumes; what thin sheets make of it: shading/sheet_ambient.h. Linear Rec. 709.
 struct AmbientLight {
@@ -32,16 +39,9 @@ struct AmbientLight {
   sky::LightMoments above, aboveLow, aboveHigh, below, belowHigh;
   float clearAir = 1.0f;        // share of the air beneath the clouds that the sun reaches
   float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
-  glm::vec3 haze{0};            // mean luminance about the eye where it does not, cd/m2
-  glm::vec3 cloudGlow{0};       // by how much volumes make that brighter than it is under the clear sky
+  AirLight haze;                // about the eye where it does not
+  AirLight cloudGlow;           // by how much volumes make that brighter than it is under the clear sky
 };
-
-// Of what hazy air takes from a ray, the share that it scatters.
-inline constexpr float kHazeScatters = 0.93f;
-// Luminance that shaded air tends to, cd/m2, in as much sky as ground. skyOnGround: lux.
-inline glm::vec3 hazeLuminance(const glm::vec3& skyOnGround, const glm::vec3& ground) {
-  return kHazeScatters * 0.5f * (skyOnGround / static_cast<float>(kPi) + ground);
-}
 
 // Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it
 // takes milliseconds to compute: linearly, within half a hundredth at dusk.

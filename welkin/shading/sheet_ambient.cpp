@@ -168,16 +168,16 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     a.below = share.y * state.ambient.below;
     a.belowHigh = share.y * state.ambient.belowHigh;
     a.clearAir = state.ambient.clearAir;
-    a.cloudGlow = state.ambient.cloudGlow * share;
+    a.cloudGlow = share * state.ambient.cloudGlow;
   }
   for (std::size_t i = 0; i < sheets.size(); ++i)
     if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];
   a.clearAir *= a.airUnderSheets;
-  a.haze = scene::hazeLuminance(a.skyOnGround, a.ground);
-  if (!volumes.empty())  // which know the air at the eye's height
-    a.haze *=
-        state.ambient.haze /
-        glm::max(scene::hazeLuminance(state.ambient.skyOnGround, state.ambient.ground), glm::vec3(1e-30f));
+  // Of what there was without them, as much as there is of light from above and from below.
+  const auto around = [](const scene::AmbientLight& light) {
+    return light.skyOnGround / static_cast<float>(kPi) + light.ground;
+  };
+  a.haze = (around(a) / glm::max(around(state.ambient), glm::vec3(1e-30f))) * state.ambient.haze;
 }
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {

@@ -42,12 +42,19 @@ class Refill {
   std::size_t count_ = 0;
 };
 
+constexpr const char* kColours[] = {".red", ".green", ".blue"};
+
 void putMoments(Refill& u, std::string_view owner, const sky::LightMoments& light) {
-  static constexpr const char* kColours[] = {".red", ".green", ".blue"};
   for (int c = 0; c < 3; ++c)
     u.put(owner, kColours[c],
           glm::vec4(light.total[c], light.along[0][c], light.along[1][c], light.along[2][c]) /
               static_cast<float>(2.0 * kPi));
+}
+
+void putAirLight(Refill& u, std::string_view owner, const scene::AirLight& light) {
+  for (int c = 0; c < 3; ++c)
+    u.put(owner, kColours[c],
+          glm::vec4(light.mean[c], light.along[0][c], light.along[1][c], light.along[2][c]));
 }
 
 }  // namespace
@@ -106,8 +113,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
   u.put("", "uClearAir", state.ambient.clearAir);
   u.put("", "uAirUnderSheets", state.ambient.airUnderSheets);
-  u.put("", "uHazeLuminance", state.ambient.haze);
-  u.put("", "uCloudGlow", state.ambient.cloudGlow);
+  putAirLight(u, "uHaze", state.ambient.haze);
+  putAirLight(u, "uCloudGlow", state.ambient.cloudGlow);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 
   const optics::DropletPhase droplets =
@@ -206,6 +213,7 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<
   constexpr float kThinnestM = 50.0f;
   constexpr std::size_t kMostBands = field::kMaxLayers;  // the length of the uniform array
   LightVolumeLayout layout;
+  if (state.scene.output.quality >= scene::Quality::kHigh) layout.columns = LightVolumeLayout::kManyColumns;
   const auto layers = state.clouds->layers();
   // A band is a range of heights with the same layers all through: cut at every base and top, so that the
   // foot of a cumulonimbus costs nothing further up.

@@ -163,7 +163,7 @@ TEST(SheetAmbient, TakesTheVolumesLightAndDimsIt) {
   const LightUnderSheets same = under(8000.0, none);
   EXPECT_NEAR(luminanceOf(same.ambient.skyOnGround) / luminanceOf(state.ambient.skyOnGround), 1.0, 1e-5);
   EXPECT_NEAR(luminanceOf(same.ambient.ground) / luminanceOf(state.ambient.ground), 1.0, 1e-5);
-  EXPECT_NEAR(luminanceOf(same.ambient.haze) / luminanceOf(state.ambient.haze), 1.0, 1e-5);
+  EXPECT_NEAR(luminanceOf(same.ambient.haze.mean) / luminanceOf(state.ambient.haze.mean), 1.0, 1e-5);
   EXPECT_EQ(same.ambient.clearAir, state.ambient.clearAir);
 
   const LightUnderSheets over = under(8000.0, thick), beneath = under(300.0, thick);
