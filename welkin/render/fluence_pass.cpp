@@ -23,26 +23,26 @@ constexpr int stepsOf(std::size_t cascade) {
 
 FluencePass::FluencePass()
     : start_(fullscreenProgram("pass/fluence_begin.frag")),
-      store_(fullscreenProgram("pass/fluence_store.frag")) {
-  for (Packed* p : {&depths_, &sources_, &steps_[0], &steps_[1]}) {
-    p->cells = gpu::Texture3D(FluenceLayout::kColumns, FluenceLayout::kColumns, kTexels,
-                              {.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest});
-    for (int i = 0; i < kTexels; ++i) p->target.attachSlice(i, p->cells, i);
-  }
-}
+      store_(fullscreenProgram("pass/fluence_store.frag")) {}
 
 void FluencePass::begin(const shading::LightVolumeLayout& volume) {
   towardsSun_ = volume.towardsSun;
-  if (relaxProgram_ != nullptr && volume.bands == bands_) return;
+  if (relaxProgram_ != nullptr && volume.bands == bands_ && 2 * layout_.columns == volume.columns) return;
   bands_ = volume.bands;
   slices_ = static_cast<int>(volume.heightsM.size());
   layout_ = shading::fluenceLayout(volume);
   const int count = std::max(1, static_cast<int>(layout_.cells.size())),
             depth = count * static_cast<int>(kCascades);
+  const int side = layout_.columns;
+  if (depths_.cells.width() != side)
+    for (Packed* p : {&depths_, &sources_, &steps_[0], &steps_[1]}) {
+      p->cells = gpu::Texture3D(side, side, kTexels,
+                                {.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest});
+      for (int i = 0; i < kTexels; ++i) p->target.attachSlice(i, p->cells, i);
+    }
   for (gpu::Texture3D& f : fluences_)
-    if (f.depth() != depth)
-      f = gpu::Texture3D(FluenceLayout::kColumns, FluenceLayout::kColumns, depth,
-                         {.format = gpu::Format::kR16F});
+    if (f.depth() != depth || f.width() != side)
+      f = gpu::Texture3D(side, side, depth, {.format = gpu::Format::kR16F});
   if (layout_.cells.empty()) return;
   shading::ShaderDefines defines{{"WELKIN_CELLS", std::to_string(count)}};
   depthsProgram_ = &cellPrograms_.with(defines);
@@ -103,7 +103,8 @@ void FluencePass::relax(int cascade) {
   relaxProgram_->bind("uSources", sources_.cells);
   relaxProgram_->bind("uBefore", steps_[last_].cells);
   relaxProgram_->set("uCells", layout_.cells);
-  relaxProgram_->set("uColumnM", 2.0f * kHalfM[static_cast<std::size_t>(cascade)] / FluenceLayout::kColumns);
+  relaxProgram_->set("uColumnM",
+                     2.0f * kHalfM[static_cast<std::size_t>(cascade)] / static_cast<float>(layout_.columns));
   last_ = 1 - last_;
   triangle_.draw(*relaxProgram_, steps_[last_].target);
 }

@@ -9,7 +9,6 @@
 namespace welkin::render {
 namespace {
 
-constexpr int kSide = shading::LightVolumeLayout::kColumns;
 constexpr int kMostSamples = 6;  // of density along the line between two slices
 // A slice on the way down samples density, on the way up only textures.
 // A step of the fluence is about as much as the latter.
@@ -17,12 +16,7 @@ constexpr float kCostDown = 4.0f, kCostUp = 1.0f, kCostSpread = 1.0f;
 
 }  // namespace
 
-LightVolumePass::LightVolumePass() : down_(fullscreenProgram("pass/light_volume_down.frag")) {
-  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
-    neighbours_[i] = gpu::Texture2D(kSide, kSide, {.format = gpu::Format::kRgba32F});
-    targets_[i].attach(0, neighbours_[i]);
-  }
-}
+LightVolumePass::LightVolumePass() : down_(fullscreenProgram("pass/light_volume_down.frag")) {}
 
 void LightVolumePass::draw(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
                            const CloudTextures& clouds, Spread spread) {
@@ -55,12 +49,18 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
   layout_ = layout;
   const int cascades = static_cast<int>(layout.kHalfM.size());
   const int depth = std::max<int>(1, static_cast<int>(layout.heightsM.size())) * cascades;
-  if (upward_.depth() != depth) {
-    upward_ = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
+  const int side = layout.columns;
+  if (neighbours_[0].width() != side)
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+      neighbours_[i] = gpu::Texture2D(side, side, {.format = gpu::Format::kRgba32F});
+      targets_[i].attach(0, neighbours_[i]);
+    }
+  if (upward_.depth() != depth || upward_.width() != side) {
+    upward_ = gpu::Texture3D(side, side, depth, {.format = gpu::Format::kRgba16F});
     for (gpu::Texture3D& v : volumes_) v = {};
   }
   if (gpu::Texture3D& next = volumes_[1 - front_]; next.id() == 0)
-    next = gpu::Texture3D(kSide, kSide, depth, {.format = gpu::Format::kRgba16F});
+    next = gpu::Texture3D(side, side, depth, {.format = gpu::Format::kRgba16F});
   if (!same) {
     upOfBand_.clear();
     for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b)
@@ -113,7 +113,7 @@ void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {
     std::size_t band = layout_.bands.size() - 1;
     while (k < layout_.bands[band].firstSlice) --band;
     gpu::Program& up = *upOfBand_[band];
-    const float voxelM = 2.0f * halfM / kSide;
+    const float voxelM = 2.0f * halfM / static_cast<float>(layout_.columns);
     const float height = heightOf(k), above = k + 1 < slices ? heightOf(k + 1) : height;
     const float shiftM = (above - height) / layout_.line.z;
     target.attachSlice(1, upward_, layer(k));

@@ -132,7 +132,8 @@ AirLight airLight(const sky::LightMoments& about) {
 
 // Of the clear sky, what comes overhead and what comes level; the sky about the sun makes most of that.
 sky::LightMoments throughGaps(const sky::LightMoments& clear, float overhead, float level) {
-  return {overhead * clear.total, {level * clear.along[0], level * clear.along[1], overhead * clear.along[2]}};
+  return {overhead * clear.total,
+          {level * clear.along[0], level * clear.along[1], overhead * clear.along[2]}};
 }
 
 // Light that clouds let through to a level plane, lux: they are darker towards the horizon (P. Moon and D. E.

@@ -8,6 +8,7 @@ namespace welkin::shading {
 
 FluenceLayout fluenceLayout(const LightVolumeLayout& volume) {
   FluenceLayout layout;
+  layout.columns = volume.columns / 2;
   const auto& bands = volume.bands;
   const auto touches = [&](std::size_t b) {
     return b + 1 < bands.size() && bands[b].topM == bands[b + 1].baseM;

@@ -10,7 +10,7 @@
 namespace welkin::shading {
 
 struct FluenceLayout {
-  static constexpr int kColumns = LightVolumeLayout::kColumns / 2;  // a side, of each cascade
+  int columns = 0;                       // a side, of each cascade: one for two of the light volume
   static constexpr int kMostCells = 16;  // on one another: four textures of four channels
   std::vector<glm::vec4> cells;  // from the ground up: slices at the lower and the upper edge, depth m, 0
   // Of each band of the light volume: its first cell, what follows its last one; the least and the greatest

@@ -67,7 +67,8 @@ struct LightVolumeLayout {
 
     bool operator==(const Band&) const = default;
   };
-  static constexpr int kColumns = 160;  // a side, of each cascade
+  static constexpr int kFewColumns = 160, kManyColumns = 320;
+  int columns = kFewColumns;  // a side, of each cascade; many in high quality
   static constexpr std::array<float, 3> kHalfM = {8000.0f, 32000.0f,
                                                   128000.0f};  // half the side of each cascade
   std::vector<Band> bands;      // of the layers that are volumes, from the ground up; they may touch

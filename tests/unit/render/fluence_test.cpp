@@ -21,7 +21,7 @@ namespace {
 using namespace welkin::testing;
 using weather::Genus;
 
-constexpr int kSide = shading::FluenceLayout::kColumns;
+constexpr int kSide = shading::LightVolumeLayout::kFewColumns / 2;
 constexpr double kSimilarity = 0.14, kAirPathM = 1000.0;  // of lib/cloud_light.glsl, pass/fluence_relax.frag
 
 // The narrowest cascade of a sky: as drawn, and its equations.

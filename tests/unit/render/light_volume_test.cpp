@@ -33,17 +33,16 @@ struct Swept {
     for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
   }
 
-  static constexpr int kSide = shading::LightVolumeLayout::kColumns;
-
   // Centre of a column of the nearest cascade, m.
-  static float coordinate(int i) {
-    return (2.0f * (static_cast<float>(i) + 0.5f) / kSide - 1.0f) * shading::LightVolumeLayout::kHalfM[0];
+  float coordinate(int i) const {
+    return (2.0f * (static_cast<float>(i) + 0.5f) / side() - 1.0f) * shading::LightVolumeLayout::kHalfM[0];
   }
+  float side() const { return static_cast<float>(layout.columns); }
 
   // Of the nearest cascade, bilinear in a slice.
   float depth(float x, float y, int slice, int channel) const {
-    const auto place = [](float q) {
-      return (q / shading::LightVolumeLayout::kHalfM[0] * 0.5f + 0.5f) * kSide - 0.5f;
+    const auto place = [&](float q) {
+      return (q / shading::LightVolumeLayout::kHalfM[0] * 0.5f + 0.5f) * side() - 0.5f;
     };
     const float u = place(x), v = place(y);
     const int i = static_cast<int>(u), j = static_cast<int>(v);
@@ -66,9 +65,10 @@ struct Swept {
 std::vector<std::pair<double, double>> pairs(const Swept& s, int slice, int channel, glm::vec3 direction) {
   std::vector<std::pair<double, double>> result;
   const float h = s.layout.heightsM[static_cast<std::size_t>(slice)];
-  for (int j = 40; j < 120; j += 5)
-    for (int i = 40; i < 120; i += 5) {
-      const float x = Swept::coordinate(i), y = Swept::coordinate(j);
+  const int side = s.layout.columns;
+  for (int j = side / 4; j < 3 * side / 4; j += side / 32)
+    for (int i = side / 4; i < 3 * side / 4; i += side / 32) {
+      const float x = s.coordinate(i), y = s.coordinate(j);
       result.emplace_back(s.texels.at(i, j, slice, channel),
                           s.state.clouds->opticalDepth(s.point(x, y, h), direction, 1e9f));
     }
@@ -120,10 +120,12 @@ TEST(LightVolume, FollowsCumulus) {
   EXPECT_GT(correlation(pairs(s, middle, 3, {0, 0, -1}), 0.05), 0.9);
 }
 
-// The shadow on the ground is looked up where the ray to the sun meets the lowest base (cloudDepthToSun in
-// lib/light_volume.glsl).
-TEST(LightVolume, CastsShadowsOnTheGround) {
-  const Swept s(cloudyScene(50.0, {Genus::kCumulus}, 4.0));
+// Shadows of cumulus on the ground, as the volume has them and along rays. They are looked up where the ray
+// to the sun meets the lowest base (cloudDepthToSun in lib/light_volume.glsl).
+std::vector<std::pair<double, double>> shadowsOfCumulus(scene::Quality quality) {
+  scene::Scene scene = cloudyScene(50.0, {Genus::kCumulus}, 4.0);
+  scene.output.quality = quality;
+  const Swept s(scene);
   const glm::vec3 sun = s.state.lights[0].direction;
   const float base = s.layout.heightsM[0];
   std::vector<std::pair<double, double>> values;
@@ -133,11 +135,22 @@ TEST(LightVolume, CastsShadowsOnTheGround) {
       values.emplace_back(s.depth(onBase.x, onBase.y, 0, 0),
                           s.state.clouds->opticalDepth(s.point(x, y, 0.5f), sun, 1e9f));
     }
+  return values;
+}
+
+TEST(LightVolume, CastsShadowsOnTheGround) {
+  const auto values = shadowsOfCumulus(scene::Quality::kMedium);
   EXPECT_GT(correlation(values, 1.0), 0.8);
   double inShadow = 0, drawn = 0;
   for (const auto& [volume, ray] : values) inShadow += std::exp(-ray), drawn += std::exp(-volume);
   // A little darker than along rays: the volume has no small noise, and columns of 100 m.
   EXPECT_NEAR(drawn / inShadow, 1.0, 0.2);
+}
+
+TEST(LightVolume, IsTwiceAsFineInHighQuality) {
+  const double medium = correlation(shadowsOfCumulus(scene::Quality::kMedium), 1.0),
+               high = correlation(shadowsOfCumulus(scene::Quality::kHigh), 1.0);
+  EXPECT_LT(1.0 - high, 0.7 * (1.0 - medium)) << medium << ", " << high;
 }
 
 TEST(LightVolume, IsFiniteForEverySun) {
