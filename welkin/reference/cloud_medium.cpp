@@ -92,12 +92,12 @@ std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, doubl
     const double majorant = bounds.majorant;
     const bool iceHere = (layers & ice_) != 0, mixed = iceHere && (layers & ~ice_) != 0;
     for (;;) {
-      const double step = depth / majorant;
-      if (t0 + step >= t1) {
-        depth -= (t1 - t0) * majorant;
+      const double left = (t1 - t0) * majorant;
+      if (depth >= left) {
+        depth -= left;
         return false;
       }
-      t0 += step;
+      t0 += depth / majorant;
       const double u = unit(random) * majorant;
       // Below the least of the extinction it need not be known.
       if (u < static_cast<double>(bounds.minorant) && !mixed) {
@@ -132,12 +132,12 @@ double CloudMedium::transmittance(const Ray& ray, double end, Random& random) co
     }
     const double rest = static_cast<double>(bounds.majorant) - static_cast<double>(bounds.minorant);
     for (;;) {
-      const double step = depth / rest;
-      if (t0 + step >= t1) {
-        depth -= (t1 - t0) * rest;
+      const double left = (t1 - t0) * rest;
+      if (depth >= left) {
+        depth -= left;
         return false;
       }
-      t0 += step;
+      t0 += depth / rest;
       depth = freeDepth(random);
       const double more =
           static_cast<double>(pointIn(layers, ray.at(t0)).extinction) - static_cast<double>(bounds.minorant);

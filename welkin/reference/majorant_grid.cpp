@@ -60,6 +60,8 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     Slice slice;
     slice.voxelsHigh =
         std::clamp(static_cast<int>(std::lround((edges_[k + 1] - edges_[k]) / kVoxelM)), 1, kVoxelsAcross);
+    slice.voxelM = (edges_[k + 1] - edges_[k]) / static_cast<float>(slice.voxelsHigh);
+    slice.voxelsPerM = 1.0f / slice.voxelM;
     slice.codes = blockedSize(kVoxelsAcross, slice.voxelsHigh);
     slice.codesBelow = columnCodes_;
     columnCodes_ += slice.codes;
@@ -111,6 +113,9 @@ std::unique_ptr<MajorantGrid::Tile> MajorantGrid::makeTile(int x, int y) const {
   const float away = std::max(std::abs(tile->low.x + 0.5f * kTileM), std::abs(tile->low.y + 0.5f * kTileM));
   tile->side = away < 12e3f ? 16 : away < 40e3f ? 8 : 4;
   tile->brickM = kTileM / static_cast<float>(tile->side);
+  tile->voxelM = tile->brickM / static_cast<float>(kVoxelsAcross);
+  tile->bricksPerM = 1.0f / tile->brickM;
+  tile->voxelsPerM = 1.0f / tile->voxelM;
   tile->needless = kNeedless / tile->brickM;
   const std::size_t slices = slices_.size();
   tile->clear.resize(slices);
@@ -141,7 +146,7 @@ const MajorantGrid::Tile* MajorantGrid::tileAt(const glm::vec3& q) const {
 }
 
 glm::ivec3 MajorantGrid::brickAt(const Tile& tile, const glm::vec3& q) const {
-  auto along = [&](float x) { return std::clamp(static_cast<int>(x / tile.brickM), 0, tile.side - 1); };
+  auto along = [&](float x) { return std::clamp(static_cast<int>(x * tile.bricksPerM), 0, tile.side - 1); };
   return {along(q.x - tile.low.x), along(q.y - tile.low.y), sliceAt(q.z)};
 }
 
@@ -154,7 +159,7 @@ MajorantGrid::Cell MajorantGrid::at(glm::vec3 q) const {
   const Bounds bounds = boundsOf(brickCode(*tile, i));
   if (bounds.majorant - bounds.minorant <= tile->needless) return {bounds, layers, brickBox(*tile, i)};
   const Brick brick = brickOf(*tile, i);
-  const glm::ivec3 v = glm::clamp(glm::ivec3((q - brick.low) / brick.sizeM), glm::ivec3(0), brick.n - 1);
+  const glm::ivec3 v = glm::clamp(glm::ivec3((q - brick.low) * brick.perM), glm::ivec3(0), brick.n - 1);
   const glm::vec3 low = brick.low + brick.sizeM * glm::vec3(v);
   return {boundsOf(voxelCode(brick, v)), layers, {low, low + brick.sizeM}};
 }

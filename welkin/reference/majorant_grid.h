@@ -84,6 +84,7 @@ class MajorantGrid {
 
   struct Slice {
     int voxelsHigh = 1;
+    float voxelM = 0.0f, voxelsPerM = 0.0f;  // of height
     std::size_t codes = 0;       // of the voxels of a brick
     std::size_t codesBelow = 0;  // of the bricks of one column below
     std::uint8_t layers = 0;
@@ -99,15 +100,15 @@ class MajorantGrid {
   struct Tile {
     glm::vec2 low{0.0f};
     int side = 4;  // bricks, a multiple of 4
-    float brickM = 0.0f;
+    float brickM = 0.0f, voxelM = 0.0f, bricksPerM = 0.0f, voxelsPerM = 0.0f;
     float needless = 0.0f;   // a brick is divided whose bounds are farther apart, 1/m
     std::vector<Run> clear;  // by slice: those around that have no cloud anywhere in the tile
     Codes bricks;            // blocked
     Codes voxels;            // by slice, row and column of bricks; then blocked
   };
   struct Brick {
-    glm::vec3 low, sizeM;  // of a voxel
-    glm::ivec3 n;          // voxels
+    glm::vec3 low, sizeM, perM;  // of a voxel, and voxels a metre
+    glm::ivec3 n;                // voxels
     std::uint16_t* codes;
   };
 
@@ -129,11 +130,12 @@ class MajorantGrid {
     return {{low.x, low.y, edges_[k]}, {low.x + tile.brickM, low.y + tile.brickM, edges_[k + 1]}};
   }
   Brick brickOf(const Tile& tile, const glm::ivec3& i) const {
-    const CloudBox box = brickBox(tile, i);
     const Slice& slice = slices_[static_cast<std::size_t>(i.z)];
-    const glm::ivec3 n(kVoxelsAcross, kVoxelsAcross, slice.voxelsHigh);
     const auto bricks = static_cast<std::size_t>(tile.side * tile.side);
-    return {box.low, (box.high - box.low) / glm::vec3(n), n,
+    return {brickBox(tile, i).low,
+            {tile.voxelM, tile.voxelM, slice.voxelM},
+            {tile.voxelsPerM, tile.voxelsPerM, slice.voxelsPerM},
+            {kVoxelsAcross, kVoxelsAcross, slice.voxelsHigh},
             &tile.voxels[slice.codesBelow * bricks +
                          static_cast<std::size_t>(i.y * tile.side + i.x) * slice.codes]};
   }
@@ -249,7 +251,7 @@ bool MajorantGrid::walkBrick(const Brick& brick, const CloudLine& line, float t,
   glm::ivec3 i, turn;
   glm::vec3 next, apart;
   for (int k = 0; k < 3; ++k) {
-    const float at = (line.from[k] + line.slope[k] * (t + kNudgeM) - brick.low[k]) / brick.sizeM[k];
+    const float at = (line.from[k] + line.slope[k] * (t + kNudgeM) - brick.low[k]) * brick.perM[k];
     i[k] = std::clamp(static_cast<int>(at), 0, brick.n[k] - 1);
     turn[k] = line.inverse[k] > 0.0f ? 1 : -1;
     next[k] =
