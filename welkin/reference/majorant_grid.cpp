@@ -24,6 +24,22 @@ std::size_t blockedSize(int across, int high) {
 
 }  // namespace
 
+CodeLines::~CodeLines() {
+  for (std::atomic<Line*>& chunk : chunks_) delete[] chunk.load();
+}
+
+std::uint32_t CodeLines::take(std::atomic<std::uint32_t>& place, std::uint32_t lines) {
+  const std::lock_guard lock(mutex_);
+  if (const std::uint32_t taken = place.load(std::memory_order_relaxed)) return taken;  // by another thread
+  if ((next_ & (kChunk - 1)) + lines > kChunk) next_ = (next_ | (kChunk - 1)) + 1;
+  const std::uint32_t first = next_;
+  std::atomic<Line*>& chunk = chunks_[first >> kChunkBits];
+  if (!chunk.load(std::memory_order_relaxed)) chunk.store(new Line[kChunk], std::memory_order_relaxed);
+  next_ += lines;
+  place.store(first, std::memory_order_release);
+  return first;
+}
+
 // Takes no memory before it is written to.
 MajorantGrid::Codes MajorantGrid::zeros(std::size_t n) {
   Codes codes(static_cast<std::uint16_t*>(std::calloc(n, sizeof(std::uint16_t))));
@@ -62,9 +78,8 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
         std::clamp(static_cast<int>(std::lround((edges_[k + 1] - edges_[k]) / kVoxelM)), 1, kVoxelsAcross);
     slice.voxelM = (edges_[k + 1] - edges_[k]) / static_cast<float>(slice.voxelsHigh);
     slice.voxelsPerM = 1.0f / slice.voxelM;
-    slice.codes = blockedSize(kVoxelsAcross, slice.voxelsHigh);
-    slice.codesBelow = columnCodes_;
-    columnCodes_ += slice.codes;
+    slice.lines =
+        static_cast<std::uint32_t>(blockedSize(kVoxelsAcross, slice.voxelsHigh) / CodeLines::kCodes);
     for (const int i : layers_) {
       const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
       if (l.baseM < edges_[k + 1] + kMarginM && l.topM > edges_[k] - kMarginM)
@@ -127,8 +142,9 @@ std::unique_ptr<MajorantGrid::Tile> MajorantGrid::makeTile(int x, int y) const {
       tile->clear[i] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(k)};
     first = k + 1;
   }
-  tile->bricks = zeros(blockedSize(tile->side, static_cast<int>(slices)));
-  tile->voxels = zeros(columnCodes_ * static_cast<std::size_t>(tile->side * tile->side));
+  const std::size_t bricks = blockedSize(tile->side, static_cast<int>(slices));
+  tile->bricks = zeros(bricks);
+  tile->voxels = std::make_unique<std::atomic<std::uint32_t>[]>(bricks);
   return tile;
 }
 

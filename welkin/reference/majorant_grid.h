@@ -17,6 +17,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,36 @@ struct CloudLine {
   float crosses(int k, float side) const {
     return inverse[k] != 0.0f ? (side - from[k]) * inverse[k] : 1e30f;
   }
+};
+
+// Lines of the cache with codes of boxes, zero at first and handed out where somebody asks for them, so that
+// only what light comes by takes memory.
+class CodeLines {
+ public:
+  static constexpr std::size_t kCodes = 32;  // a line
+
+  // The codes that a place holds; one that is 0 gets so many lines. For several threads.
+  std::uint16_t* at(std::atomic<std::uint32_t>& place, std::uint32_t lines) {
+    std::uint32_t first = place.load(std::memory_order_acquire);
+    if (first == 0) first = take(place, lines);
+    return chunks_[first >> kChunkBits].load(std::memory_order_relaxed)[first & (kChunk - 1)].codes.data();
+  }
+
+  CodeLines() : chunks_(std::size_t{1} << (32 - kChunkBits)) {}
+  ~CodeLines();
+  CodeLines(const CodeLines&) = delete;
+  CodeLines& operator=(const CodeLines&) = delete;
+
+ private:
+  struct alignas(64) Line {
+    std::array<std::uint16_t, kCodes> codes{};
+  };
+  static constexpr std::uint32_t kChunkBits = 14, kChunk = 1u << kChunkBits;  // lines: a MiB
+  std::uint32_t take(std::atomic<std::uint32_t>& place, std::uint32_t lines);
+
+  std::vector<std::atomic<Line*>> chunks_;
+  std::mutex mutex_;
+  std::uint32_t next_ = kChunk;  // the first chunk is for nobody: 0 is no place
 };
 
 class MajorantGrid {
@@ -85,8 +116,7 @@ class MajorantGrid {
   struct Slice {
     int voxelsHigh = 1;
     float voxelM = 0.0f, voxelsPerM = 0.0f;  // of height
-    std::size_t codes = 0;       // of the voxels of a brick
-    std::size_t codesBelow = 0;  // of the bricks of one column below
+    std::uint32_t lines = 0;  // of the voxels of a brick
     std::uint8_t layers = 0;
   };
   struct Free {
@@ -104,7 +134,8 @@ class MajorantGrid {
     float needless = 0.0f;   // a brick is divided whose bounds are farther apart, 1/m
     std::vector<Run> clear;  // by slice: those around that have no cloud anywhere in the tile
     Codes bricks;            // blocked
-    Codes voxels;            // by slice, row and column of bricks; then blocked
+    // Of each brick, as they are blocked: where its voxels' codes are in voxels_, blocked; 0: nowhere yet.
+    std::unique_ptr<std::atomic<std::uint32_t>[]> voxels;
   };
   struct Brick {
     glm::vec3 low, sizeM, perM;  // of a voxel, and voxels a metre
@@ -131,13 +162,11 @@ class MajorantGrid {
   }
   Brick brickOf(const Tile& tile, const glm::ivec3& i) const {
     const Slice& slice = slices_[static_cast<std::size_t>(i.z)];
-    const auto bricks = static_cast<std::size_t>(tile.side * tile.side);
     return {brickBox(tile, i).low,
             {tile.voxelM, tile.voxelM, slice.voxelM},
             {tile.voxelsPerM, tile.voxelsPerM, slice.voxelsPerM},
             {kVoxelsAcross, kVoxelsAcross, slice.voxelsHigh},
-            &tile.voxels[slice.codesBelow * bricks +
-                         static_cast<std::size_t>(i.y * tile.side + i.x) * slice.codes]};
+            voxels_.at(tile.voxels[blocked(i, tile.side)], slice.lines)};
   }
   // What is known of a box, made if need be.
   template <class Box>
@@ -170,9 +199,9 @@ class MajorantGrid {
   std::vector<float> edges_;  // of slices, rising
   std::vector<Slice> slices_;
   std::vector<int> sliceGuide_;
-  std::size_t columnCodes_ = 0;     // of the voxels of a column of bricks
   std::array<float, 256> steps_{};  // of extinction, rising
   mutable std::vector<std::atomic<Tile*>> tiles_;
+  mutable CodeLines voxels_;
 };
 
 // J. Amanatides and A. Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing", at each of three sizes.
