@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds of the clouds' extinction on a grid: what null-collision tracking steps by. Tiles of 2 km hold
 // bricks of some hundred metres near the eye and wider ones far from it; slices between the layers' bases and
-// tops are cut to match. A brick that holds an edge of dense cloud is divided into voxels. Bounds are made
-// where light comes by, two bytes a box, boxes near each other in one cache line.
+// tops are cut to match. A brick that holds an edge of dense cloud is divided into voxels. Bounds are made,
+// and voxels take memory, where light comes by: two bytes a box, boxes near each other in one cache line.
 //
 // Safe to use from several threads: bounds do not depend on who asks first.
 #pragma once
@@ -116,7 +116,7 @@ class MajorantGrid {
   struct Slice {
     int voxelsHigh = 1;
     float voxelM = 0.0f, voxelsPerM = 0.0f;  // of height
-    std::uint32_t lines = 0;  // of the voxels of a brick
+    std::uint32_t lines = 0;                 // of the voxels of a brick
     std::uint8_t layers = 0;
   };
   struct Free {

@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "tests/testing/skies.h"
+#include "welkin/core/parallel.h"
 #include "welkin/reference/directions.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/sky_state.h"
@@ -143,6 +148,35 @@ TEST(MajorantGrid, WalksFromCellToCell) {
   EXPECT_EQ(skipped, 0.0);
   EXPECT_GT(cloudless, 1000.0);
   EXPECT_GT(visited, 1000);
+}
+
+// Places asked for by several threads at a time, over several chunks of memory.
+TEST(CodeLines, GivesEachPlaceLinesOfItsOwn) {
+  constexpr std::size_t kPlaces = 40000;
+  CodeLines lines;
+  std::vector<std::atomic<std::uint32_t>> places(kPlaces);
+  auto size = [](std::size_t place) { return static_cast<std::uint32_t>(1 + place % 2); };
+  std::vector<std::uint16_t*> asked(2 * kPlaces);
+  parallelFor(asked.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t place = i / 2;
+      asked[i] = lines.at(places[place], size(place));
+    }
+  });
+  auto codes = [&](std::size_t place) {
+    return std::span(asked[2 * place], size(place) * CodeLines::kCodes);
+  };
+  for (std::size_t place = 0; place < kPlaces; ++place) {
+    ASSERT_EQ(asked[2 * place], asked[2 * place + 1]);
+    for (std::uint16_t& code : codes(place)) {
+      ASSERT_EQ(code, 0);  // nobody else's
+      code = static_cast<std::uint16_t>(place + 1);
+    }
+  }
+  for (std::size_t place = 0; place < kPlaces; ++place) {
+    ASSERT_EQ(lines.at(places[place], size(place)), asked[2 * place]);
+    for (const std::uint16_t code : codes(place)) ASSERT_EQ(code, static_cast<std::uint16_t>(place + 1));
+  }
 }
 
 TEST(CloudMedium, HasTheDensityOfTheField) {
