@@ -34,6 +34,7 @@ std::vector<int> allLayers(const field::CloudField& field) {
 
 CloudMedium mediumOf(const scene::SkyState& state) {
   std::vector<bool> ice;
+  ice.reserve(state.weather.layers.size());
   for (const weather::Layer& layer : state.weather.layers) ice.push_back(scene::isIce(layer.genus));
   return CloudMedium(*state.clouds, allLayers(*state.clouds), ice);
 }
