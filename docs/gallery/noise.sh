@@ -43,6 +43,6 @@ done
 histogram "$work/r.json" "$work/histogram.pgm"
 row dome "$work/noise.png" "$work/cloud.png" "$work/histogram.pgm"
 
-"$program" cloud -o "$work/x.dds" --dynamics 2 --preview "$work/example.png"
-"$program" cloud --cumulus --voxel 10 -o "$work/x.dds" --dynamics 1.5 --preview "$work/tower.png"
+"$program" cloud -o "$work/x.dds" --format r32f --dynamics 2 --preview "$work/example.png"
+"$program" cloud --cumulus --voxel 10 -o "$work/x.dds" --format r32f --dynamics 1.5 --preview "$work/tower.png"
 row maps "$work/example.png" "$work/tower.png"
