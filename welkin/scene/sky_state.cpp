@@ -136,14 +136,14 @@ sky::LightMoments throughGaps(const sky::LightMoments& clear, float overhead, fl
           {level * clear.along[0], level * clear.along[1], overhead * clear.along[2]}};
 }
 
-// Light that clouds let through to a level plane, lux: they are darker towards the horizon (P. Moon and D. E.
-// Spencer 1942, "Illumination from a Non-Uniform Sky": by that there is 6/7 of the light of an even sky on a
-// small ball), where they are closed.
-sky::LightMoments fromClouds(const glm::vec3& illuminance) {
-  return {2.0f * 0.9f * illuminance, {glm::vec3(0.0f), glm::vec3(0.0f), illuminance}};
+// Light that clouds let through to a level plane, lux. Closed ones are darker towards the horizon: there is
+// 6/7 of the light of an even sky on a small ball (P. Moon and D. E. Spencer 1942, "Illumination from a
+// Non-Uniform Sky").
+sky::LightMoments fromClouds(const glm::vec3& illuminance, float cover) {
+  return {2.0f * (1.0f - cover / 7.0f) * illuminance, {glm::vec3(0.0f), glm::vec3(0.0f), illuminance}};
 }
-// How much of the sun's light that clouds have scattered still goes on level, for each unit of what falls on
-// a level plane: of twice that, a fifth.
+// Mean cosine to the light's own way, level, of light that broken clouds have scattered downwards much as it
+// came; on a small ball there is twice as much of it as on a level plane.
 constexpr float kOnwards = 0.4f;
 
 // Fills in below and belowHigh: the air that clouds see beneath them, a share of it shaded by them, and the
@@ -163,13 +163,14 @@ void addLightFromBelow(const SkyState& s, const sky::LightMoments& lowAir, const
   a.belowHigh = highAir + shade + hemisphere(high * a.ground, -1.0f);
 }
 
-// Illuminance by the sky of a level plane at a height above the ground, lux; highM: that of the highest
-// known.
-glm::vec3 skyAt(const AmbientLight& a, double heightM, double highM) {
-  const glm::vec3 ground = a.above.along[2], low = a.aboveLow.along[2], high = a.aboveHigh.along[2];
-  const auto share = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
-  if (heightM < ClearSkyKey::kLowM) return glm::mix(ground, low, share(heightM / ClearSkyKey::kLowM));
-  return glm::mix(low, high, share((heightM - ClearSkyKey::kLowM) / (highM - ClearSkyKey::kLowM)));
+// Light of the sky at a height above the ground; highM: that of the highest known.
+sky::LightMoments skyAt(const AmbientLight& a, double heightM, double highM) {
+  const auto mix = [](const sky::LightMoments& x, const sky::LightMoments& y, double w) {
+    const auto share = static_cast<float>(std::clamp(w, 0.0, 1.0));
+    return (1.0f - share) * x + share * y;
+  };
+  if (heightM < ClearSkyKey::kLowM) return mix(a.above, a.aboveLow, heightM / ClearSkyKey::kLowM);
+  return mix(a.aboveLow, a.aboveHigh, (heightM - ClearSkyKey::kLowM) / (highM - ClearSkyKey::kLowM));
 }
 
 AmbientLight ambientLight(const SkyState& s) {
@@ -184,8 +185,10 @@ AmbientLight ambientLight(const SkyState& s) {
   a.above = now(before.ground, after.ground);
   a.aboveLow = now(before.low, after.low);
   a.aboveHigh = now(before.high, after.high);
-  const sky::LightMoments clear = a.above;
-  const glm::vec3 skyOnGround = clear.along[2];
+  const double ground = atmosphere.groundAltitudeM(), highM = highAltitude(ground) - ground,
+               eyeM = s.scene.camera.eyeM;
+  const sky::LightMoments clear = skyAt(a, eyeM, highM);
+  const glm::vec3 skyOnGround = a.above.along[2];
   a.skyLow = skyOnGround / pi;
   a.skyHigh = a.aboveHigh.along[2] / pi;
   const CloudShade shade =
@@ -202,8 +205,7 @@ AmbientLight ambientLight(const SkyState& s) {
              through = static_cast<float>(shade.diffuse), aside = static_cast<float>(shade.aside);
   const glm::vec3 albedo(s.scene.ground.albedo);
   // What goes through clouds fell on them where the sky is darker and less blue than at the ground.
-  const double ground = atmosphere.groundAltitudeM();
-  const glm::vec3 skyOnClouds = skyAt(a, shade.lightM, highAltitude(ground) - ground);
+  const glm::vec3 skyOnClouds = skyAt(a, shade.lightM, highM).along[2];
   const float gaps = std::min(1.0f - cover, through);
   const glm::vec3 skyThrough = skyOnGround * gaps + skyOnClouds * (through - gaps);
   a.skyOnGround = skyThrough + onClouds * scatteredDown;
@@ -223,21 +225,23 @@ AmbientLight ambientLight(const SkyState& s) {
   a.skyOnGround += moreThrough;
   a.ground += albedo / pi * moreThrough;
   // From above the clouds most of the air in view is sunlit.
-  const double eyeM = s.scene.camera.eyeM;
   a.clearAir = shade.any && eyeM < shade.lowM + 200.0 ? 1.0f - cover : 1.0f;
   // Around the eye beneath the clouds, where they are overhead; and above, where they are in the place of the
   // ground. What they turn by a few degrees only lights the air as it did before.
   const float above = static_cast<float>(
       shade.any ? std::clamp((eyeM - shade.lowM) / std::max(shade.highM - shade.lowM, 1.0), 0.0, 1.0) : 0.0);
-  const sky::LightMoments over = clear + hemisphere(moreOnGround / pi, 1.0f) + hemisphere(upward, -1.0f);
-  // Broken clouds send as much down as up from all sides; the rest goes on downwards much as it came, and
-  // counts half.
-  const float fromAllSides = 0.5f * (scatteredDown + std::min(scatteredDown, 1.0f - passes));
-  sky::LightMoments under = throughGaps(clear, gaps, 1.0f - taken) + hemisphere(moreThrough / pi, 1.0f) +
-                            hemisphere(a.ground, -1.0f) +
-                            fromClouds(skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides));
+  const sky::LightMoments over =
+      clear + hemisphere(sentBack(ground + eyeM), 1.0f) + hemisphere(upward, -1.0f);
+  // Clouds send as much down as up from all sides; the rest, of broken ones, goes on downwards much as it
+  // came, and counts half.
+  const float onwards = std::max(scatteredDown - (1.0f - passes), 0.0f);
+  const float fromAllSides = scatteredDown - 0.5f * onwards;
+  sky::LightMoments under =
+      throughGaps(clear, gaps, 1.0f - taken) + hemisphere(moreThrough / pi, 1.0f) +
+      hemisphere(a.ground, -1.0f) +
+      fromClouds(skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides), cover);
   for (int i = 0; i < 2; ++i)
-    under.along[i] += kOnwards * s.lights[0].direction[i] * (aside * scatteredDown) * onClouds;
+    under.along[i] += 2.0f * kOnwards * s.lights[0].direction[i] * (aside * onwards) * onClouds;
   const AirLight none = airLight(clear + hemisphere(bare, -1.0f));
   a.haze = airLight((1.0f - above) * under + above * over);
   a.cloudGlow.mean = glm::max(a.haze.mean - none.mean, glm::vec3(0.0f));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that reaches the ground under clouds, against the reference renderer's.
+// Light that reaches ground, clouds and air from all sides; of the ground against the reference renderer's.
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "welkin/core/units.h"
 #include "welkin/scene/sky_state.h"
@@ -9,11 +11,15 @@
 namespace welkin::scene {
 namespace {
 
-SkyState skyUnder(weather::Genus genus, double oktas, const char* time) {
+constexpr double kNoHazeM = 300e3;
+
+SkyState skyUnder(weather::Genus genus, double oktas, const char* time, double visibilityM = kNoHazeM,
+                  double eyeM = 2.0) {
   Scene s;
+  s.camera.eyeM = eyeM;
   s.time = parseUtcTime(time);
   s.place.latitudeDeg = 45.0;
-  s.visibilityM = 300e3;
+  s.visibilityM = visibilityM;
   s.technique = Technique::kVolume;
   if (oktas > 0.0) {
     weather::Layer layer = weather::typicalLayer(genus, 45.0);
@@ -61,6 +67,33 @@ TEST(AmbientLight, OfTheSkyIsMoreOverClouds) {
   EXPECT_GT(more.z, 0.1f * clear.aboveLow.along[2].z);
   EXPECT_GT(more.z, 2.0f * more.x);
   EXPECT_GT(more.x, 0.0f);
+}
+
+float greenTowards(const AirLight& light, const glm::vec3& way) {
+  return light.mean.y + light.along[0].y * way.x + light.along[1].y * way.y + light.along[2].y * way.z;
+}
+
+// Haze scatters forward: towards the sky about a low sun there is more than away from it, over a deck more
+// towards the deck, and under one no side is brighter than another.
+TEST(AmbientLight, OfHazeIsMoreWhereLightComesFrom) {
+  using enum weather::Genus;
+  const char* morning = "2026-06-21T06:00:00Z";
+  const SkyState clear = skyUnder(kStratus, 0.0, morning, 30e3),
+                 under = skyUnder(kNimbostratus, 8.0, morning, 30e3),
+                 over = skyUnder(kStratus, 8.0, morning, 30e3, 5000.0);
+  const glm::vec3 sun = clear.lights[0].direction;
+  const glm::vec3 level = glm::vec3(sun.x, sun.y, 0.0f) / std::hypot(sun.x, sun.y);
+  const auto ratio = [](const AirLight& light, const glm::vec3& way) {
+    return greenTowards(light, way) / greenTowards(light, -way);
+  };
+  EXPECT_GT(ratio(clear.ambient.haze, level), 1.2f);
+  EXPECT_LT(ratio(clear.ambient.haze, level), 4.0f);
+  EXPECT_NEAR(ratio(under.ambient.haze, level), 1.0f, 0.15f);
+  EXPECT_GT(ratio(over.ambient.haze, {0.0f, 0.0f, -1.0f}), 1.3f);
+  // None of it by clouds where there are none.
+  EXPECT_EQ(clear.ambient.cloudGlow.mean, glm::vec3(0.0f));
+  EXPECT_NEAR(greenTowards(clear.ambient.cloudGlow, level), 0.0f, 1e-4f * clear.ambient.haze.mean.y);
+  EXPECT_GT(over.ambient.cloudGlow.mean.y, 0.1f * over.ambient.haze.mean.y);
 }
 
 }  // namespace
