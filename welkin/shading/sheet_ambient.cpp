@@ -175,7 +175,7 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
   a.clearAir *= a.airUnderSheets;
   // Of what there was without them, as much as there is of light from above and from below.
   const auto around = [](const scene::AmbientLight& light) {
-    return light.skyOnGround / static_cast<float>(kPi) + light.ground;
+    return light.skyOnGround / kPiF + light.ground;
   };
   a.haze = (around(a) / glm::max(around(state.ambient), glm::vec3(1e-30f))) * state.ambient.haze;
 }
