@@ -2,6 +2,8 @@
 // The blocks of a fill, compiled for every instruction set and chosen at run time.
 #include "welkin/noise/fill.h"
 
+#include <cmath>
+
 // This file once for each target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "welkin/noise/fill.cpp"
@@ -30,10 +32,13 @@ void fillBlock(const FillJob& job, const Block& b, Scratch&) {
 void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out) {
   for (int i = 0; i < n; ++i) {
     const double t = inside[i], high = fade(t), slope = fadeSlope(t);
-    out.lowWeight[i] = static_cast<float>(derivative ? -slope : 1.0 - high);
-    out.lowReach[i] = static_cast<float>(derivative ? 1.0 - high - slope * t : (1.0 - high) * t);
-    out.highWeight[i] = static_cast<float>(derivative ? slope : high);
-    out.highReach[i] = static_cast<float>(derivative ? high + slope * (t - 1.0) : high * (t - 1.0));
+    const auto put = [i](double v, float* to) {
+      to[i] = std::abs(v) < CornerArrays::kLeast ? 0.0f : static_cast<float>(v);
+    };
+    put(derivative ? -slope : 1.0 - high, out.lowWeight);
+    put(derivative ? 1.0 - high - slope * t : (1.0 - high) * t, out.lowReach);
+    put(derivative ? slope : high, out.highWeight);
+    put(derivative ? high + slope * (t - 1.0) : high * (t - 1.0), out.highReach);
   }
 }
 
@@ -194,10 +199,14 @@ void makeCorners(const double* inside, int n, bool derivative, const CornerArray
       high = slope;
       low = hn::Neg(slope);
     }
-    hn::StoreU(hn::DemoteTo(df, low), df, out.lowWeight + i);
-    hn::StoreU(hn::DemoteTo(df, lowReach), df, out.lowReach + i);
-    hn::StoreU(hn::DemoteTo(df, high), df, out.highWeight + i);
-    hn::StoreU(hn::DemoteTo(df, highReach), df, out.highReach + i);
+    const auto put = [&](hn::Vec<decltype(d)> v, float* to) HWY_ATTR {
+      const auto little = hn::Lt(hn::Abs(v), hn::Set(d, CornerArrays::kLeast));
+      hn::StoreU(hn::DemoteTo(df, hn::IfThenZeroElse(little, v)), df, to + i);
+    };
+    put(low, out.lowWeight);
+    put(lowReach, out.lowReach);
+    put(high, out.highWeight);
+    put(highReach, out.highReach);
   }
 }
 

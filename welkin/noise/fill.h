@@ -246,6 +246,10 @@ void fillPointwise(const FillJob& job, const Block& block);
 // On the processor's best instruction set: weights and reaches of corners from places within cells, n of
 // them, and the hashes of lattice points.
 struct CornerArrays {
+  // What is less counts as nothing: samples that lie on lattice points but for an error of rounding would
+  // make products too small for normal floats, which many processors multiply a hundred times more slowly.
+  static constexpr double kLeast = 0x1p-40;
+
   float *lowWeight, *lowReach, *highWeight, *highReach;
 };
 void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out);
