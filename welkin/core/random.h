@@ -20,9 +20,12 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
 constexpr std::uint64_t hashOf(std::uint64_t a) {
   return mixBits(a + 0x9e3779b97f4a7c15ULL);
 }
+constexpr std::uint64_t joinHashes(std::uint64_t first, std::uint64_t rest) {
+  return mixBits(first ^ (rest * 0x9e3779b97f4a7c15ULL));
+}
 template <class... Rest>
 constexpr std::uint64_t hashOf(std::uint64_t a, Rest... rest) {
-  return mixBits(hashOf(a) ^ (hashOf(static_cast<std::uint64_t>(rest)...) * 0x9e3779b97f4a7c15ULL));
+  return joinHashes(hashOf(a), hashOf(static_cast<std::uint64_t>(rest)...));
 }
 
 // A uniform number in [0, 1) from the top 24 bits of a hash; exact in float.

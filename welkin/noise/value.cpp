@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "welkin/core/random.h"
+#include "welkin/noise/value_rows.h"
 
 namespace welkin::noise {
 namespace {
@@ -49,22 +50,6 @@ Taps tapsOf(Interpolation interpolation) {
   return interpolation == Interpolation::kCubic ? Taps{0, 3} : Taps{1, 2};
 }
 
-float sourceHash(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  const std::uint32_t m = x + 57u * y + 57u * 57u * z;
-  const std::uint32_t n = (m << 13) ^ m;
-  const std::uint32_t bits = (n * (n * n * 15731u + 789221u) + 1376312589u) & 0x7fffffffu;
-  return static_cast<float>(1.0 - static_cast<double>(bits) / 1073741824.0);
-}
-
-// The 27-point average from the bare values: edges and corners weigh the same, so the sum over the cube does
-// most of it.
-constexpr double kCentre = 9.0 / 18.0, kFace = 4.0 / (18.0 * 6.0), kRest = 3.0 / (18.0 * 12.0);
-static_assert(kRest == 2.0 / (18.0 * 8.0));
-
-float smoothed(double cube, double faces, double centre) {
-  return static_cast<float>(kRest * (cube - faces - centre) + kFace * faces + kCentre * centre);
-}
-
 }  // namespace
 
 Value::Value(const ValueSettings& settings) : settings_(settings) {
@@ -80,8 +65,8 @@ std::uint32_t Value::wrapped(std::int64_t i, int axis) const {
 
 float Value::hash(std::int64_t x, std::int64_t y, std::int64_t z) const {
   const std::uint32_t i = wrapped(x, 0), j = wrapped(y, 1), k = wrapped(z, 2);
-  if (settings_.seed == 0) return sourceHash(i, j, k);
-  return 2.0f * unitFloat(hashOf(settings_.seed, i, j, k)) - 1.0f;
+  if (settings_.seed == 0) return sourceHash(i + sourceRow(j, k));
+  return ownHash(hashOf(i), ownRow(settings_.seed, j, k));
 }
 
 float Value::lattice(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -94,7 +79,7 @@ float Value::lattice(std::int64_t x, std::int64_t y, std::int64_t z) const {
         cube += g;
         if (std::abs(i) + std::abs(j) + std::abs(k) == 1) faces += g;
       }
-  return smoothed(cube, faces, hash(x, y, z));
+  return smoothedValue(cube, faces, hash(x, y, z));
 }
 
 ValueAndSlope Value::withSlope(double x, double y, double z) const {
@@ -125,15 +110,17 @@ double Value::operator()(double x, double y, double z) const {
 
 // Where the samples of one axis fall among the lattice points that they need.
 struct Value::Axis {
-  std::vector<std::int64_t> points;          // lattice coordinates, the smoothing's margin among them
-  std::vector<int> first;                    // for each sample, index in `points` of its first tap
-  std::vector<std::array<float, 4>> weight;  // for each sample, of its taps
+  std::vector<std::uint32_t> points;         // indices of lattice points, the smoothing's margin among them
+  std::vector<std::uint64_t> hashed;         // the same, hashed
+  std::vector<std::int32_t> first;           // for each sample, where in `points` its first tap is
+  std::array<std::vector<float>, 4> weight;  // by tap, for each sample
   int taps = 0;
 
-  void set(const ValueSettings& settings, std::span<const CellPlace> places) {
+  void set(const Value& noise, int axis, std::span<const CellPlace> places) {
+    const ValueSettings& settings = noise.settings_;
     points.clear();
     first.clear();
-    weight.clear();
+    for (auto& w : weight) w.clear();
     const Taps range = tapsOf(settings.interpolation);
     taps = range.last - range.first + 1;
     const int margin = settings.smooth ? 1 : 0;
@@ -142,12 +129,13 @@ struct Value::Axis {
       const std::int64_t tap = place.cell + range.first - 1;
       const std::int64_t begin = tap - margin, end = tap + taps + margin;
       if (points.empty() || begin < runBegin || begin > runEnd) runBegin = runEnd = begin;
-      for (; runEnd < end; ++runEnd) points.push_back(runEnd);
+      for (; runEnd < end; ++runEnd) points.push_back(noise.wrapped(runEnd, axis));
       first.push_back(size() - static_cast<int>(runEnd - tap));
       const Weights w = weightsAt(settings.interpolation, place.inside);
-      weight.emplace_back();
-      for (int t = 0; t < taps; ++t) weight.back()[t] = static_cast<float>(w.value[range.first + t]);
+      for (int t = 0; t < taps; ++t) weight[t].push_back(static_cast<float>(w.value[range.first + t]));
     }
+    hashed.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) hashed[i] = hashOf(points[i]);
   }
   int size() const { return static_cast<int>(points.size()); }
 };
@@ -166,7 +154,7 @@ class Value::Planes {
 
   // Plane `k` of z.points; asked for in rising order, up to a step back of `taps`.
   const std::vector<float>& at(int k) {
-    if (!noise_->settings_.smooth) return hashed(k);
+    if (!noise_->settings_.smooth) return hashed(k).values;
     Plane& plane = smooth_[k % smooth_.size()];
     if (plane.k != k) {
       plane.k = k;
@@ -179,37 +167,40 @@ class Value::Planes {
   struct Plane {
     int k = -1;
     std::vector<float> values;  // x fastest, of x.points and y.points
+    std::vector<double> boxes;  // of hashes that are to be smoothed: sums over 3 x 3 of them
   };
 
-  const std::vector<float>& hashed(int k) {
+  const Plane& hashed(int k) {
     Plane& plane = hashed_[k % hashed_.size()];
-    if (plane.k != k) {
-      plane.k = k;
-      plane.values.resize(static_cast<std::size_t>(x_->size()) * y_->size());
-      std::size_t n = 0;
-      for (const std::int64_t y : y_->points)
-        for (const std::int64_t x : x_->points) plane.values[n++] = noise_->hash(x, y, z_->points[k]);
+    if (plane.k == k) return plane;
+    plane.k = k;
+    const int width = x_->size(), rows = y_->size();
+    plane.values.resize(static_cast<std::size_t>(width) * rows);
+    const std::uint64_t seed = noise_->settings_.seed;
+    for (int y = 0; y < rows; ++y) {
+      float* out = &plane.values[static_cast<std::size_t>(y) * width];
+      if (seed == 0)
+        sourceHashes(x_->points.data(), width, sourceRow(y_->points[y], z_->points[k]), out);
+      else
+        ownHashes(x_->hashed.data(), width, ownRow(seed, y_->points[y], z_->points[k]), out);
     }
-    return plane.values;
+    if (!noise_->settings_.smooth) return plane;
+    plane.boxes.resize(plane.values.size());
+    for (int y = 1; y + 1 < rows; ++y)
+      sumBoxes(&plane.values[static_cast<std::size_t>(y) * width], width,
+               &plane.boxes[static_cast<std::size_t>(y) * width]);
+    return plane;
   }
 
   // The margin of `out`, whose neighbours are missing, is left as it is: no sample has a tap there.
-  void smooth(std::vector<float>& out, const std::vector<float>& below, const std::vector<float>& here,
-              const std::vector<float>& above) const {
+  void smooth(std::vector<float>& out, const Plane& below, const Plane& here, const Plane& above) const {
     const int width = x_->size();
-    out.resize(here.size());
-    for (int y = 1; y + 1 < y_->size(); ++y)
-      for (int x = 1; x + 1 < width; ++x) {
-        const std::size_t at = static_cast<std::size_t>(y) * width + x;
-        double cube = 0.0;  // summed in the order of lattice(), so that both agree to the bit
-        for (const auto* plane : {&below, &here, &above})
-          for (const std::size_t row : {at - width, at, at + width})
-            for (std::size_t i = row - 1; i <= row + 1; ++i) cube += (*plane)[i];
-        double faces = below[at];
-        for (const std::size_t i : {at - width, at - 1, at + 1, at + width}) faces += here[i];
-        faces += above[at];
-        out[at] = smoothed(cube, faces, here[at]);
-      }
+    out.resize(here.values.size());
+    for (int y = 1; y + 1 < y_->size(); ++y) {
+      const std::size_t at = static_cast<std::size_t>(y) * width;
+      smoothRow({&below.values[at], &here.values[at], &above.values[at]},
+                {&below.boxes[at], &here.boxes[at], &above.boxes[at]}, width, &out[at]);
+    }
   }
 
   const Value* noise_ = nullptr;
@@ -238,31 +229,26 @@ void Value::add(std::span<float> out, float weight, std::span<const CellPlace> x
   assert(out.size() == xs.size() * ys.size() * zs.size());
   thread_local Room room;
   auto& [x, y, z, planes, slice, row] = room;
-  x.set(settings_, xs);
-  y.set(settings_, ys);
-  z.set(settings_, zs);
+  x.set(*this, 0, xs);
+  y.set(*this, 1, ys);
+  z.set(*this, 2, zs);
   planes.begin(*this, x, y, z);
   slice.resize(static_cast<std::size_t>(x.size()) * y.size());
   row.resize(x.points.size());
-  std::size_t n = 0;
+  float* to = out.data();
   for (std::size_t k = 0; k < zs.size(); ++k) {
-    std::fill(slice.begin(), slice.end(), 0.0f);
-    for (int t = 0; t < z.taps; ++t) {
-      const std::vector<float>& plane = planes.at(z.first[k] + t);
-      const float w = weight * z.weight[k][t];
-      for (std::size_t i = 0; i < slice.size(); ++i) slice[i] += w * plane[i];
-    }
-    for (std::size_t j = 0; j < ys.size(); ++j) {
-      std::fill(row.begin(), row.end(), 0.0f);
-      for (int t = 0; t < y.taps; ++t) {
-        const float* from = &slice[static_cast<std::size_t>(y.first[j] + t) * row.size()];
-        for (std::size_t i = 0; i < row.size(); ++i) row[i] += y.weight[j][t] * from[i];
-      }
-      for (std::size_t i = 0; i < xs.size(); ++i, ++n) {
-        float sum = 0.0f;
-        for (int t = 0; t < x.taps; ++t) sum += x.weight[i][t] * row[x.first[i] + t];
-        out[n] += sum;
-      }
+    std::array<Tap, 4> taps;
+    int count = 0;
+    for (int t = 0; t < z.taps; ++t)  // in a plane all but one weigh nothing
+      if (z.weight[t][k] != 0.0f) taps[count++] = {planes.at(z.first[k] + t).data(), weight * z.weight[t][k]};
+    mixRows(std::span(taps).first(count), static_cast<int>(slice.size()), slice.data());
+    for (std::size_t j = 0; j < ys.size(); ++j, to += xs.size()) {
+      for (int t = 0; t < y.taps; ++t)
+        taps[t] = {&slice[static_cast<std::size_t>(y.first[j] + t) * row.size()], y.weight[t][j]};
+      mixRows(std::span(taps).first(y.taps), x.size(), row.data());
+      const std::array<const float*, 4> weights = {x.weight[0].data(), x.weight[1].data(), x.weight[2].data(),
+                                                   x.weight[3].data()};
+      addSamples(row.data(), {x.first.data(), weights, x.taps}, static_cast<int>(xs.size()), to);
     }
   }
 }
