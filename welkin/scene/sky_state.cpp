@@ -130,6 +130,19 @@ AirLight airLight(const sky::LightMoments& about) {
   return {mean * about.total, {along * about.along[0], along * about.along[1], along * about.along[2]}};
 }
 
+// By how much light is more than another. Where it is less in the mean there is none of it from any side, and
+// what is linear in directions is never more than a single light of that mean has.
+AirLight excess(const AirLight& light, const AirLight& other) {
+  AirLight more{glm::max(light.mean - other.mean, glm::vec3(0.0f)), {}};
+  for (int c = 0; c < 3; ++c) {
+    glm::vec3 along;
+    for (int i = 0; i < 3; ++i) along[i] = light.along[i][c] - other.along[i][c];
+    const float most = 3.0f * kHazeAsymmetry * more.mean[c], length = glm::length(along);
+    for (int i = 0; i < 3; ++i) more.along[i][c] = length > most ? along[i] * (most / length) : along[i];
+  }
+  return more;
+}
+
 // Of the clear sky, what comes overhead and what comes level; the sky about the sun makes most of that.
 sky::LightMoments throughGaps(const sky::LightMoments& clear, float overhead, float level) {
   return {overhead * clear.total,
@@ -244,8 +257,7 @@ AmbientLight ambientLight(const SkyState& s) {
     under.along[i] += 2.0f * kOnwards * s.lights[0].direction[i] * (aside * onwards) * onClouds;
   const AirLight none = airLight(clear + hemisphere(bare, -1.0f));
   a.haze = airLight((1.0f - above) * under + above * over);
-  a.cloudGlow.mean = glm::max(a.haze.mean - none.mean, glm::vec3(0.0f));
-  for (int i = 0; i < 3; ++i) a.cloudGlow.along[i] = a.haze.along[i] - none.along[i];
+  a.cloudGlow = excess(a.haze, none);
   // Under a low sun nearly all of it is in their shade.
   addLightFromBelow(s, now(before.lowAir, after.lowAir), now(before.highAir, after.highAir), taken * aside,
                     a);

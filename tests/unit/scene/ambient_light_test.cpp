@@ -96,5 +96,26 @@ TEST(AmbientLight, OfHazeIsMoreWhereLightComesFrom) {
   EXPECT_GT(over.ambient.cloudGlow.mean.y, 0.1f * over.ambient.haze.mean.y);
 }
 
+// Clouds that make the air darker make no side of it brighter: what they add from one side is part of what
+// they add in the mean.
+TEST(AmbientLight, OfCloudsInSunlitAirHasNoSideWithoutAMean) {
+  using enum weather::Genus;
+  int darker = 0, brighter = 0;
+  for (const auto genus : {kCumulus, kStratocumulus, kNimbostratus})
+    for (const double oktas : {3.0, 6.0, 8.0})
+      for (const char* time : {"2026-06-21T05:00:00Z", "2026-06-21T11:00:00Z"})
+        for (const double eyeM : {2.0, 5000.0}) {
+          const AirLight glow = skyUnder(genus, oktas, time, 30e3, eyeM).ambient.cloudGlow;
+          for (int c = 0; c < 3; ++c) {
+            const float along = glm::length(glm::vec3(glow.along[0][c], glow.along[1][c], glow.along[2][c]));
+            EXPECT_LE(along, 1.2001f * glow.mean[c])
+                << static_cast<int>(genus) << " " << oktas << " " << time;
+            (glow.mean[c] > 0.0f ? brighter : darker) += 1;
+          }
+        }
+  EXPECT_GT(darker, 0);
+  EXPECT_GT(brighter, 0);
+}
+
 }  // namespace
 }  // namespace welkin::scene
