@@ -446,6 +446,8 @@ void SplatPass::drawLight(const shading::ViewParts& view, const SkyTextures& tab
   tables.bind(light);
   light.bind("uDepths", depths_);
   const gpu::Target tiles(toTiles_->id(), {0, 0, kTilesWidthPx, tilesHeight_});
+  // A fetch at a tile's edge has some 1e-4 of the texel beside it, which is not to be an earlier frame's.
+  toTiles_->clear();
   inTiles_.draw(light, tiles, {});
   pictures_.draw(view, tables, {depths_, kShadeSize.sidePx}, tiles);
 }
