@@ -50,6 +50,21 @@ Taps tapsOf(Interpolation interpolation) {
   return interpolation == Interpolation::kCubic ? Taps{0, 3} : Taps{1, 2};
 }
 
+// out += the row between its points: of the points from first[i] on, each weighs weight[tap][i]. Number by
+// number: the processor's own gathering of so many is slower.
+template <int kTaps>
+void addSamples(const float* row, const std::int32_t* first, const std::array<std::vector<float>, 4>& weight,
+                std::span<float> out) {
+  std::array<const float*, kTaps> w;
+  for (int t = 0; t < kTaps; ++t) w[t] = weight[t].data();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float* from = row + first[i];
+    float sum = w[0][i] * from[0];
+    for (int t = 1; t < kTaps; ++t) sum += w[t][i] * from[t];
+    out[i] += sum;
+  }
+}
+
 }  // namespace
 
 Value::Value(const ValueSettings& settings) : settings_(settings) {
@@ -235,20 +250,21 @@ void Value::add(std::span<float> out, float weight, std::span<const CellPlace> x
   planes.begin(*this, x, y, z);
   slice.resize(static_cast<std::size_t>(x.size()) * y.size());
   row.resize(x.points.size());
-  float* to = out.data();
+  std::size_t n = 0;
   for (std::size_t k = 0; k < zs.size(); ++k) {
     std::array<Tap, 4> taps;
     int count = 0;
     for (int t = 0; t < z.taps; ++t)  // in a plane all but one weigh nothing
       if (z.weight[t][k] != 0.0f) taps[count++] = {planes.at(z.first[k] + t).data(), weight * z.weight[t][k]};
     mixRows(std::span(taps).first(count), static_cast<int>(slice.size()), slice.data());
-    for (std::size_t j = 0; j < ys.size(); ++j, to += xs.size()) {
+    for (std::size_t j = 0; j < ys.size(); ++j, n += xs.size()) {
       for (int t = 0; t < y.taps; ++t)
         taps[t] = {&slice[static_cast<std::size_t>(y.first[j] + t) * row.size()], y.weight[t][j]};
       mixRows(std::span(taps).first(y.taps), x.size(), row.data());
-      const std::array<const float*, 4> weights = {x.weight[0].data(), x.weight[1].data(), x.weight[2].data(),
-                                                   x.weight[3].data()};
-      addSamples(row.data(), {x.first.data(), weights, x.taps}, static_cast<int>(xs.size()), to);
+      if (x.taps == 2)
+        addSamples<2>(row.data(), x.first.data(), x.weight, out.subspan(n, xs.size()));
+      else
+        addSamples<4>(row.data(), x.first.data(), x.weight, out.subspan(n, xs.size()));
     }
   }
 }

@@ -68,22 +68,6 @@ void mixRows(const std::span<const Tap> taps, int count, float* out) {
   }
 }
 
-template <int kTaps>
-void addSome(const float* HWY_RESTRICT row, const SampleTaps& taps, int count, float* HWY_RESTRICT out) {
-  const std::int32_t* HWY_RESTRICT const first = taps.first;
-  const auto weight = taps.weight;
-  for (int i = 0; i < count; ++i) {
-    float sum = 0.0f;
-    for (int t = 0; t < kTaps; ++t) sum += weight[t][i] * row[first[i] + t];
-    out[i] += sum;
-  }
-}
-
-void addSamples(const float* row, const SampleTaps& taps, int count, float* out) {
-  if (taps.count == 2) return addSome<2>(row, taps, count, out);
-  addSome<4>(row, taps, count, out);
-}
-
 }  // namespace welkin::noise::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -96,7 +80,6 @@ HWY_EXPORT(ownHashes);
 HWY_EXPORT(sumBoxes);
 HWY_EXPORT(smoothRow);
 HWY_EXPORT(mixRows);
-HWY_EXPORT(addSamples);
 
 void sourceHashes(const std::uint32_t* x, int count, std::uint32_t row, float* out) {
   HWY_DYNAMIC_DISPATCH(sourceHashes)(x, count, row, out);
@@ -112,9 +95,6 @@ void smoothRow(const Three<float>& values, const Three<double>& boxes, int width
 }
 void mixRows(std::span<const Tap> taps, int count, float* out) {
   HWY_DYNAMIC_DISPATCH(mixRows)(taps, count, out);
-}
-void addSamples(const float* row, const SampleTaps& taps, int count, float* out) {
-  HWY_DYNAMIC_DISPATCH(addSamples)(row, taps, count, out);
 }
 
 }  // namespace welkin::noise

@@ -59,12 +59,4 @@ struct Tap {
 };
 void mixRows(std::span<const Tap> taps, int count, float* out);
 
-// out += the row between its points: of the points from first[i] on, each weighs weight[tap][i].
-struct SampleTaps {
-  const std::int32_t* first;
-  std::array<const float*, 4> weight;
-  int count;  // 2 or 4
-};
-void addSamples(const float* row, const SampleTaps& taps, int count, float* out);
-
 }  // namespace welkin::noise
