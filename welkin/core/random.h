@@ -20,6 +20,7 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
 constexpr std::uint64_t hashOf(std::uint64_t a) {
   return mixBits(a + 0x9e3779b97f4a7c15ULL);
 }
+// Of the first of several integers and the rest, from the hashes of both: hashOf() in steps.
 constexpr std::uint64_t joinHashes(std::uint64_t first, std::uint64_t rest) {
   return mixBits(first ^ (rest * 0x9e3779b97f4a7c15ULL));
 }
