@@ -8,9 +8,9 @@
 // band) for each. Indices are constants then, and a march through one band costs nothing for the others; compilers that run all
 // branches of a program for all its pixels (Mesa's software rasteriser above all) would pay for every layer at every step.
 
-uniform CloudLayer uLayers[8];
-uniform float uLayerIce[8];       // 1: ice crystals, 0: droplets
-uniform float uLayerCover[8];     // of the sky, [0, 1]
+WELKIN_FIXED uniform CloudLayer uLayers[8];
+WELKIN_FIXED uniform float uLayerIce[8];       // 1: ice crystals, 0: droplets
+WELKIN_FIXED uniform float uLayerCover[8];     // of the sky, [0, 1]
 uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
 uniform sampler3D uDetailNoise;

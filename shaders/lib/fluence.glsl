@@ -12,11 +12,11 @@
 
 uniform sampler3D uFluence;
 uniform float uFluenceCells;             // of one cascade
-uniform vec4 uFluenceBands[kMaxBands];   // of each band: its first cell, what follows its last one, and between what cells it may be looked up
+WELKIN_FIXED uniform vec4 uFluenceBands[kMaxBands];   // of each band: its first cell, what follows its last one, and between what cells it may be looked up
 
 float fluenceCell(float heightM) {
   float cell = uFluenceBands[0].z;
-  for (int i = 0; i < uBandCount; ++i) {
+  for (int i = 0; i < WELKIN_BANDS; ++i) {
     vec4 band = uBands[i], cells = uFluenceBands[i];
     if (heightM >= band.x) cell = clamp(mix(cells.x, cells.y, (heightM - band.x) / (band.y - band.x)), cells.z, cells.w);
   }
@@ -24,7 +24,7 @@ float fluenceCell(float heightM) {
 }
 
 float fluenceTexel(vec2 q, float cell, int cascade) {
-  vec2 uv = clamp(q / uCascadeHalfM[cascade] * 0.5 + 0.5, 0.0, 1.0);
+  vec2 uv = clamp(q / cascadeHalfM(cascade) * 0.5 + 0.5, 0.0, 1.0);
   return textureLod(uFluence, vec3(uv, (float(cascade) * uFluenceCells + cell) / (uFluenceCells * float(kCascades))), 0.0).x;
 }
 

@@ -9,10 +9,17 @@
 const int kMaxBands = 8;
 const int kCascades = 3;
 
-uniform vec4 uBands[kMaxBands];    // base m, top m, first slice, last slice
+// Of each band base m, top m, first slice, last slice. How many there are is compiled in where the order of the march is, so that all
+// indices are constants.
+#ifdef WELKIN_BANDS
+WELKIN_FIXED uniform vec4 uBands[kMaxBands];
+#else
+uniform vec4 uBands[kMaxBands];
 uniform int uBandCount;
+#define WELKIN_BANDS uBandCount
+#endif
 uniform float uSliceCount;         // of one cascade
-uniform float uCascadeHalfM[kCascades];
+WELKIN_FIXED uniform float uCascadeHalfM[kCascades];
 uniform vec3 uLine;                // unit, z > 0
 uniform float uLineTowardsSun;     // 1: towards the sun, 0: away from it
 uniform vec2 uLightShiftM;         // from the eye's frame to the volume's: where the eye and the wind have moved since it was swept
@@ -20,15 +27,17 @@ uniform vec2 uLightShiftM;         // from the eye's frame to the volume's: wher
 // Slice at a height, fractional. Between bands: the first slice of the band above (from below) has all that lies above.
 float lightVolumeSlice(float heightM) {
   float slice = uBands[0].z;
-  for (int i = 0; i < uBandCount; ++i) {
+  for (int i = 0; i < WELKIN_BANDS; ++i) {
     vec4 band = uBands[i];
     if (heightM >= band.x) slice = mix(band.z, band.w, clamp((heightM - band.x) / (band.y - band.x), 0.0, 1.0));
   }
   return slice;
 }
 
+float cascadeHalfM(int cascade) { return cascade == 0 ? uCascadeHalfM[0] : (cascade == 1 ? uCascadeHalfM[1] : uCascadeHalfM[2]); }
+
 vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
-  vec2 uv = clamp(q / uCascadeHalfM[cascade] * 0.5 + 0.5, 0.0, 1.0);
+  vec2 uv = clamp(q / cascadeHalfM(cascade) * 0.5 + 0.5, 0.0, 1.0);
   float w = (float(cascade) * uSliceCount + slice + 0.5) / (uSliceCount * float(kCascades));
   return textureLod(volume, vec3(uv, w), 0.0);
 }
@@ -42,7 +51,7 @@ struct LightCascade {
 LightCascade lightCascade(vec2 q) {
   float reach = max(abs(q.x), abs(q.y));
   int own = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
-  return LightCascade(own, own == kCascades - 1 ? 0.0 : max((reach / uCascadeHalfM[own] - 0.77) / 0.19, 0.0));
+  return LightCascade(own, own == kCascades - 1 ? 0.0 : max((reach / cascadeHalfM(own) - 0.77) / 0.19, 0.0));
 }
 
 vec4 lightVolumeAt(sampler3D volume, vec3 q) {
@@ -57,8 +66,8 @@ vec4 lightVolumeAt(sampler3D volume, vec3 q) {
 // How far apart its columns are at a place, m: nothing smaller is known there.
 float lightVolumeCellM(sampler3D volume, vec3 q) {
   LightCascade cascade = lightCascade(vec2(q) + uLightShiftM);
-  float halfM = uCascadeHalfM[cascade.own];
-  if (cascade.next > 0.0) halfM = mix(halfM, uCascadeHalfM[cascade.own + 1], cascade.next);
+  float halfM = cascadeHalfM(cascade.own);
+  if (cascade.next > 0.0) halfM = mix(halfM, cascadeHalfM(cascade.own + 1), cascade.next);
   return 2.0 * halfM / float(textureSize(volume, 0).x);
 }
 
@@ -70,11 +79,11 @@ CloudDepths cloudDepthsAt(sampler3D volume, vec3 q) {
 
 // Depth towards the sun from anywhere outside the bands too, as for the ground: along the line to the next band, then as stored.
 float cloudDepthToSun(sampler3D volume, vec3 q) {
-  if (uBandCount == 0 || uLineTowardsSun < 0.5) return 0.0;
+  if (WELKIN_BANDS == 0 || uLineTowardsSun < 0.5) return 0.0;
   vec3 p = q;
   bool inside = false;
   float nextBase = 1e9;
-  for (int i = 0; i < uBandCount; ++i) {
+  for (int i = 0; i < WELKIN_BANDS; ++i) {
     if (q.z >= uBands[i].x && q.z <= uBands[i].y) inside = true;
     if (uBands[i].x > q.z) nextBase = min(nextBase, uBands[i].x);
   }

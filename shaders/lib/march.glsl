@@ -26,9 +26,9 @@ uniform float uStepLong;          // the longest step through clear air, in thos
 uniform int uMaxSteps;
 uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
 #ifdef WELKIN_SHEETS
-uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
+WELKIN_FIXED uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
 uniform int uHits;                // WELKIN_HITS
-uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
+WELKIN_FIXED uniform vec4 uBandSky[8];         // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
 #endif
 
 // A march of segments of a ray, one behind the other (WELKIN_SEGMENTS): none steps beyond its end, and cloud at its beginning is cloud from

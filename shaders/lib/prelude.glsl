@@ -8,3 +8,5 @@ precision highp sampler3D;
 #define WELKIN_CONST const
 #define WELKIN_OUT(type) out type
 #define WELKIN_INOUT(type) inout type
+// Before an array of uniforms: all its indices are constants.
+#define WELKIN_FIXED

@@ -17,8 +17,8 @@ uniform vec3 uGroundLight;        // luminance of the ground as clouds see it
 struct LightMoments {
   vec4 red, green, blue;
 };
-uniform LightMoments uAboveLight[3];  // from above the horizon at the ground, at 2 km, at 10 km
-uniform LightMoments uBelowLight[2];  // from below it, air and ground, at 2 km, at 10 km
+WELKIN_FIXED uniform LightMoments uAboveLight[3];  // from above the horizon at the ground, at 2 km, at 10 km
+WELKIN_FIXED uniform LightMoments uBelowLight[2];  // from below it, air and ground, at 2 km, at 10 km
 uniform sampler2D uSkyView;
 uniform sampler3D uAerialInscatter;
 uniform sampler3D uAerialTransmittance;

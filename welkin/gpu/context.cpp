@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "welkin/core/error.h"
+#include "welkin/gpu/draw.h"
 
 namespace welkin::gpu {
 namespace {
@@ -277,9 +278,7 @@ bool Context::hasCompute() const {
 }
 
 bool Context::isSoftware() const {
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader"})
-    if (impl_->device.find(name) != std::string::npos) return true;
-  return false;
+  return gpu::isSoftware();
 }
 
 int Context::maxTextureSize2D() const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/gpu/draw.h"
 
+#include <string_view>
+
 #include "welkin/gpu/gl_format.h"
 
 namespace welkin::gpu {
@@ -43,6 +45,13 @@ void FullscreenTriangle::draw(const Program& program, const Target& target,
 
 bool canCompute() {
   return epoxy_is_desktop_gl() && epoxy_gl_version() >= 43;
+}
+
+bool isSoftware() {
+  const auto* device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader"})
+    if (device && std::string_view(device).find(name) != std::string_view::npos) return true;
+  return false;
 }
 
 void bindImage(int unit, const Texture& texture, Access access) {

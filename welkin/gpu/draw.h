@@ -62,6 +62,8 @@ class FullscreenTriangle {
 
 // Compute, where Context::hasCompute(), or this of a context that somebody else made.
 bool canCompute();
+// As Context::isSoftware(), of the current context, whoever made it.
+bool isSoftware();
 enum class Access { kRead, kWrite, kReadWrite };
 // `layout(binding = unit)` of an image uniform; volumes are bound whole.
 void bindImage(int unit, const Texture& texture, Access access);

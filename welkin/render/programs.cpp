@@ -3,24 +3,35 @@
 
 #include <type_traits>
 
+#include "welkin/gpu/draw.h"
+
 namespace welkin::render {
+
+namespace {
+
+ShaderSource sourceOf(std::string_view name, shading::ShaderDialect dialect,
+                      std::span<const shading::ShaderDefine> defines) {
+  return shading::assembleShader(
+      name, dialect, defines,
+      gpu::isSoftware() ? shading::UniformReads::kOnce : shading::UniformReads::kWhereUsed);
+}
+
+}  // namespace
 
 gpu::Program graphicsProgram(std::string_view vertex, std::string_view fragment,
                              std::span<const shading::ShaderDefine> defines) {
   constexpr auto kDialect = shading::ShaderDialect::kGl330;
-  return gpu::Program::graphics(shading::assembleShader(vertex, kDialect, defines),
-                                shading::assembleShader(fragment, kDialect, defines));
+  return gpu::Program::graphics(sourceOf(vertex, kDialect, defines), sourceOf(fragment, kDialect, defines));
 }
 
 gpu::Program fullscreenProgram(std::string_view fragment, std::span<const shading::ShaderDefine> defines) {
-  return gpu::Program::graphics(
-      shading::assembleShader("pass/fullscreen.vert", shading::ShaderDialect::kGl330),
-      shading::assembleShader(fragment, shading::ShaderDialect::kGl330, defines));
+  constexpr auto kDialect = shading::ShaderDialect::kGl330;
+  return gpu::Program::graphics(sourceOf("pass/fullscreen.vert", kDialect, {}),
+                                sourceOf(fragment, kDialect, defines));
 }
 
 gpu::Program computeProgram(std::string_view entry, std::span<const shading::ShaderDefine> defines) {
-  return gpu::Program::compute(
-      shading::assembleShader(entry, shading::ShaderDialect::kGl430Compute, defines));
+  return gpu::Program::compute(sourceOf(entry, shading::ShaderDialect::kGl430Compute, defines));
 }
 
 gpu::Program& ProgramVariants::with(const shading::ShaderDefines& defines) {

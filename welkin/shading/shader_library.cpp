@@ -59,9 +59,53 @@ std::optional<std::string_view> afterInclude(std::string_view line) {
   return trimLeft(line.substr(kWord.size()));
 }
 
+std::string_view takeWord(std::string_view& s) {
+  s = trimLeft(s);
+  const std::size_t end = std::min(s.find_first_of(" \t"), s.size());
+  const std::string_view word = s.substr(0, end);
+  s.remove_prefix(end);
+  return word;
+}
+
+// A variable of the global scope.
+struct Variable {
+  std::string type, name, array;  // "[8]" or nothing
+};
+
+// The uniforms that a line declares and that can be read once: all but samplers, and of arrays those that are
+// indexed by constants alone.
+std::vector<Variable> readableOnce(std::string_view line) {
+  std::string_view word = takeWord(line);
+  const bool fixed = word == "WELKIN_FIXED";
+  if (fixed) word = takeWord(line);
+  const std::string type(word == "uniform" ? takeWord(line) : "");
+  if (type.empty() || type.find("sampler") != std::string::npos) return {};
+  std::vector<Variable> variables;
+  line = line.substr(0, line.find(';'));
+  while (!line.empty()) {
+    const std::size_t comma = std::min(line.find(','), line.size());
+    const std::string_view name = trimLeft(line.substr(0, comma));
+    line.remove_prefix(std::min(comma + 1, line.size()));
+    const std::size_t bracket = std::min(name.find('['), name.size());
+    if (bracket == name.size() || fixed)
+      variables.push_back(
+          {type, std::string(name.substr(0, name.find_first_of(" \t["))), std::string(name.substr(bracket))});
+  }
+  return variables;
+}
+
+constexpr std::string_view kMain = "void main() {";
+
+// Always true, which compilers do not know: what is assigned under it stays where it is assigned.
+constexpr std::string_view kAlways = "gl_FragCoord.x >= 0.0";
+constexpr std::string_view kAlwaysInCompute = "gl_NumWorkGroups.x > 0u";
+
 class Assembler {
  public:
-  explicit Assembler(std::string_view entry) { source_.files.emplace_back(entry); }
+  // always: a condition under which main() is to read uniforms once; empty: where they are used.
+  Assembler(std::string_view entry, std::string_view always) : always_(always) {
+    source_.files.emplace_back(entry);
+  }
 
   void add(std::string_view text) { source_.text += text; }
 
@@ -79,8 +123,15 @@ class Assembler {
         addInclude(*rest, index, number);
         lineDirective(number + 1, index);
       } else {
+        if (line.starts_with(kMain) && !once_.empty()) {
+          source_.text += kMain;
+          readOnce();
+          lineDirective(number, index);
+          line.remove_prefix(kMain.size());
+        }
         source_.text += line;
         source_.text += '\n';
+        if (!always_.empty() && declareOnce(line)) lineDirective(number + 1, index);
       }
     }
   }
@@ -98,6 +149,25 @@ class Assembler {
     source_.text += "#line " + std::to_string(line) + ' ' + std::to_string(index) + '\n';
   }
 
+  // Behind a declaration of uniforms: variables that are used in their place. True: there are some.
+  bool declareOnce(std::string_view line) {
+    const std::vector<Variable> variables = readableOnce(line);
+    for (const auto& [type, name, array] : variables) {
+      source_.text += type + ' ' + name + '_' + array + ";\nvoid read_" + name + "() { " + name +
+                      "_ = " + name + "; }\n#define " + name + ' ' + name + "_\n";
+      once_.push_back(name);
+    }
+    return !variables.empty();
+  }
+
+  // At the beginning of main(): their values, of those whose declaration is not left out by a condition.
+  void readOnce() {
+    source_.text += "\nif (" + always_ + ") {\n";
+    for (const std::string& name : once_)
+      source_.text += "#ifdef " + name + "\nread_" + name + "();\n#endif\n";
+    source_.text += "}\n";
+  }
+
   void addInclude(std::string_view rest, std::size_t includer, int line) {
     const std::string from = source_.files[includer];
     const std::size_t close = rest.size() > 1 ? rest.find('"', 1) : std::string_view::npos;
@@ -112,6 +182,8 @@ class Assembler {
   }
 
   ShaderSource source_;
+  std::string always_;
+  std::vector<std::string> once_;
 };
 
 std::string_view versionLine(ShaderDialect dialect) {
@@ -129,13 +201,16 @@ std::string_view versionLine(ShaderDialect dialect) {
 }  // namespace
 
 ShaderSource assembleShader(std::string_view name, ShaderDialect dialect,
-                            std::span<const ShaderDefine> defines) {
+                            std::span<const ShaderDefine> defines, UniformReads reads) {
   const std::optional<std::string> entry = findShader(name), prelude = findShader(kPrelude);
   if (!prelude)
     throw IoError("no shader files in " + diskFolder() + " (WELKIN_SHADER_DIR): lib/prelude.glsl is missing");
   if (!entry) throw Error("there is no shader file \"" + std::string(name) + '"' + suggestion(name));
 
-  Assembler assembler(name);
+  std::string_view always;
+  if (reads == UniformReads::kOnce && name.ends_with(".frag")) always = kAlways;
+  if (reads == UniformReads::kOnce && name.ends_with(".comp")) always = kAlwaysInCompute;
+  Assembler assembler(name, always);
   assembler.add(versionLine(dialect));
   assembler.addNewFile(kPrelude, *prelude);
   for (const ShaderDefine& define : defines)

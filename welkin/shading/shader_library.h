@@ -31,11 +31,19 @@ enum class ShaderDialect {
 // Name and value of a macro: {"WELKIN_STEPS", "64"}. Defined before the entry point and after the prelude.
 using ShaderDefine = std::pair<std::string, std::string>;
 
+// How often a fragment or compute shader reads its uniforms: wherever it uses them, which costs a GPU
+// nothing; or once, at the beginning of main(). Mesa's software rasteriser reads them number by number for
+// each of eight pixels, some thirty-five instructions, at every step of a loop. For kOnce, uniforms are
+// declared on lines of their own that begin with `uniform`, and main() begins a line as `void main() {`.
+// Arrays are read once where WELKIN_FIXED stands before the declaration: all their indices are constants.
+enum class UniformReads { kWhereUsed, kOnce };
+
 // The complete text of an entry point, named by its path below shaders/ ("pass/march.frag").
 // Throws Error when there is no such file, ParseError (file:line) when an include in it names none or cannot
 // be understood, IoError when WELKIN_SHADER_DIR cannot be read.
 ShaderSource assembleShader(std::string_view name, ShaderDialect dialect,
-                            std::span<const ShaderDefine> defines = {});
+                            std::span<const ShaderDefine> defines = {},
+                            UniformReads reads = UniformReads::kWhereUsed);
 
 // The names of all shader files, entry points and libraries, in alphabetical order.
 std::vector<std::string> shaderNames();

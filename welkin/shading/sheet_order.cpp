@@ -88,7 +88,8 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
                         {"WELKIN_EACH_SHEET(CALL)", each},
                         {"WELKIN_EACH_SHADOW(FLAT, MEAN)", shadows},
                         {"WELKIN_EACH_DOWN(BAND, SHEET)", down},
-                        {"WELKIN_EACH_UP(BAND, SHEET)", up}};
+                        {"WELKIN_EACH_UP(BAND, SHEET)", up},
+                        {"WELKIN_BANDS", std::to_string(layout.bands.size())}};
   addBallDefines(layout, defines);
   return defines;
 }

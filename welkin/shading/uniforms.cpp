@@ -308,7 +308,8 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
   }
   ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", layers},
                         {"WELKIN_EACH_BAND_DOWN(CALL)", down},
-                        {"WELKIN_EACH_BAND_UP(CALL)", up}};
+                        {"WELKIN_EACH_BAND_UP(CALL)", up},
+                        {"WELKIN_BANDS", std::to_string(layout.bands.size())}};
   addBallDefines(layout, defines);
   return defines;
 }

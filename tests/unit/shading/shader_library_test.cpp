@@ -11,7 +11,10 @@
 #include "welkin/core/error.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
+#include "welkin/gpu/draw.h"
+#include "welkin/gpu/framebuffer.h"
 #include "welkin/gpu/program.h"
+#include "welkin/gpu/texture.h"
 #include "welkin/shading/sheet_order.h"
 #include "welkin/shading/uniforms.h"
 
@@ -121,24 +124,96 @@ TEST(ShaderLibrary, MissingFolderIsAnError) {
   unsetenv("WELKIN_SHADER_DIR");
 }
 
+// Both ways of reading uniforms give the same values: alone, several in a line, structs, arrays with and
+// without WELKIN_FIXED, left out by a condition, in an include, and where main() is one line.
+TEST(ShaderLibrary, UniformsReadOnceAreTheSame) {
+  const DiskShaders disk;
+  disk.write("lib/prelude.glsl", "precision highp float;\n#define WELKIN_FIXED\n");
+  disk.write("lib/air.glsl",
+             "struct Air { float thick; vec2 wind; };\n"
+             "uniform Air uAir;   // of a, kind; that has all\n"
+             "#ifdef SECOND\nuniform vec3 uLight;\n#else\nconst vec3 uLight = vec3(7.0);\n#endif\n"
+             "float air() { return uAir.thick + uAir.wind.y + uLight.z; }\n");
+  disk.write(
+      "pass/v.vert",
+      "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }\n");
+  disk.write("pass/x.frag",
+             "#include \"lib/air.glsl\"\n"
+             "  uniform   int uCount, uFirst;\n"
+             "uniform mat3 uTurn;\n"
+             "WELKIN_FIXED uniform Air uLayers[2];\n"
+             "WELKIN_FIXED uniform float uFixed[3], uOther ;\n"
+             "uniform float uFree[4];\n"
+             "uniform sampler2D uTexture;\n"
+             "out vec4 c;\n"
+             "float sum() {\n"
+             "  float s = 0.0;\n"
+             "  for (int i = uFirst; i < uCount; ++i) s += uFree[i];\n"
+             "  return s;\n"
+             "}\n"
+             "void main() { c = vec4(air(), sum(), (uTurn * vec3(1.0)).y + uOther, uLayers[1].wind.x + "
+             "uFixed[2]); }\n");
+  const gpu::Context context;
+  for (const bool second : {false, true}) {
+    ShaderDefines defines;
+    if (second) defines.emplace_back("SECOND", "1");
+    for (const UniformReads reads : {UniformReads::kWhereUsed, UniformReads::kOnce}) {
+      const ShaderSource source = assembleShader("pass/x.frag", ShaderDialect::kGl330, defines, reads);
+      // What is read at the beginning of main().
+      const auto once = [&](const char* name) {
+        return source.text.find("read_" + std::string(name) + "();") != std::string::npos;
+      };
+      for (const char* name : {"uAir", "uLight", "uCount", "uFirst", "uTurn", "uLayers", "uFixed", "uOther"})
+        EXPECT_EQ(once(name), reads == UniformReads::kOnce) << name;
+      EXPECT_FALSE(once("uFree") || once("uTexture"));
+
+      gpu::Program program =
+          gpu::Program::graphics(assembleShader("pass/v.vert", ShaderDialect::kGl330, {}, reads), source);
+      program.set("uAir.thick", 1.0f);
+      program.set("uAir.wind", glm::vec2(0.0f, 20.0f));
+      program.set("uLight", glm::vec3(0.0f, 0.0f, 300.0f));
+      program.set("uCount", 4);
+      program.set("uFirst", 2);
+      glm::mat3 turn(0.0f);
+      turn[2][1] = 5.0f;
+      program.set("uTurn", turn);
+      program.set("uOther", 0.25f);
+      program.set("uLayers[1].wind", glm::vec2(40.0f, 0.0f));
+      const float fixed[] = {1.0f, 2.0f, 3.0f}, free[] = {1.0f, 2.0f, 4.0f, 8.0f};
+      program.set("uFixed", std::span<const float>(fixed));
+      program.set("uFree", std::span<const float>(free));
+      const gpu::Texture2D texture(1, 1, {.format = gpu::Format::kRgba32F});
+      const gpu::Framebuffer target(texture);
+      const gpu::FullscreenTriangle triangle;
+      triangle.draw(program, target);
+      EXPECT_EQ(target.readPicture().data,
+                (std::vector<float>{second ? 321.0f : 28.0f, 12.0f, 5.25f, 43.0f}));
+    }
+  }
+}
+
 // The line that a compiler names is the line of the file, before, between and after includes, in both
-// dialects.
+// dialects, however uniforms are read.
 TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
   const DiskShaders disk;
   disk.write("lib/good.glsl", "float two() {\n  return 2.0f;\n}\n");
-  disk.write("lib/bad.glsl", "float three() {\n\n  return threee;\n}\n");
+  disk.write("lib/bad.glsl", "uniform float uThree;\nfloat three() {\n  return uThree + threee;\n}\n");
   disk.write("pass/v.vert", "void main() { gl_Position = vec4(0.0f); }\n");
   disk.write("pass/in_include.frag",
              "#include \"lib/good.glsl\"\n#include \"lib/bad.glsl\"\nout vec4 c;\nvoid main() { c = "
              "vec4(two()); }\n");
   disk.write("pass/after.frag",
-             "#include \"lib/good.glsl\"\nout vec4 c;\nvoid main() {\n  c = vec4(twoo());\n}\n");
-  for (const bool es : {false, true}) {
+             "#include \"lib/good.glsl\"\nuniform vec4 c0;\nout vec4 c;\nvoid main() {\n  c = c0 + "
+             "vec4(twoo());\n}\n");
+  for (const auto& [es, reads] :
+       {std::pair(false, UniformReads::kWhereUsed), std::pair(true, UniformReads::kWhereUsed),
+        std::pair(false, UniformReads::kOnce), std::pair(true, UniformReads::kOnce)}) {
     gpu::Context context({.api = es ? gpu::Api::kGles : gpu::Api::kGl});
     const ShaderDialect dialect = es ? ShaderDialect::kEs300 : ShaderDialect::kGl330;
     const auto message = [&](const char* name) -> std::string {
       try {
-        gpu::Program::graphics(assembleShader("pass/v.vert", dialect), assembleShader(name, dialect));
+        gpu::Program::graphics(assembleShader("pass/v.vert", dialect),
+                               assembleShader(name, dialect, {}, reads));
       } catch (const GpuError& error) {
         return error.what();
       }
@@ -146,7 +221,7 @@ TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
     };
     EXPECT_NE(message("pass/in_include.frag").find("lib/bad.glsl:3"), std::string::npos)
         << message("pass/in_include.frag");
-    EXPECT_NE(message("pass/after.frag").find("pass/after.frag:4"), std::string::npos)
+    EXPECT_NE(message("pass/after.frag").find("pass/after.frag:5"), std::string::npos)
         << message("pass/after.frag");
   }
 }
@@ -191,16 +266,19 @@ TEST(ShaderLibrary, EveryEntryPointCompilesInEveryDialect) {
         SCOPED_TRACE(name + " with " + std::to_string(layers) + " layers" +
                      (es ? " as GLSL ES 3.00" : " as GLSL 3.30"));
         const ShaderDefines defines = definesOfLayers(layers);
+        const UniformReads reads = layers % 2 ? UniformReads::kOnce : UniformReads::kWhereUsed;
         if (name.ends_with(".frag")) {
           // Its own vertices, where it has some.
           const std::string vertices = name.substr(0, name.size() - 4) + "vert";
           const bool own = std::ranges::find(names, vertices) != names.end();
           EXPECT_NO_THROW(gpu::Program::graphics(own ? assembleShader(vertices, dialect, defines) : triangle,
-                                                 assembleShader(name, dialect, defines)));
+                                                 assembleShader(name, dialect, defines, reads)));
         } else if (name.ends_with(".vert")) {
           EXPECT_NO_THROW(gpu::Program::graphics(assembleShader(name, dialect, defines), nothing));
         } else if (name.ends_with(".comp") && !es && context.hasCompute()) {
-          EXPECT_NO_THROW(gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute, defines)));
+          for (const UniformReads either : {UniformReads::kWhereUsed, UniformReads::kOnce})
+            EXPECT_NO_THROW(
+                gpu::Program::compute(assembleShader(name, ShaderDialect::kGl430Compute, defines, either)));
         }
       }
     EXPECT_TRUE(context.takeErrors().empty());
