@@ -10,7 +10,7 @@
 namespace welkin::render {
 namespace {
 
-constexpr int kTilePx = 32;
+constexpr int kTilePx = 16;
 constexpr int kResolveRadius = 2;
 
 // How far the luminance at (x, y) is from the line through its neighbours, relative to theirs: zero in flat
@@ -30,9 +30,10 @@ float roughness(const Image<float>& sums, int x, int y) {
   return largest;
 }
 
-// Does any measure of a pixel of the tile exceed four times the tolerance, or their mean the tolerance?
+// Does any measure of a pixel of the tile exceed `anywhere` times the tolerance, or their mean the tolerance?
 template <class Measure>
-bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, const Measure& measure) {
+bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, float anywhere,
+             const Measure& measure) {
   const int x1 = std::min(x0 + kTilePx, size.width), y1 = std::min(y0 + kTilePx, size.height);
   float sum = 0.0f, largest = 0.0f;
   for (int y = y0; y < y1; ++y)
@@ -41,7 +42,7 @@ bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, const Me
       sum += m;
       largest = std::max(largest, m);
     }
-  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > 4.0f * tolerance;
+  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > anywhere * tolerance;
 }
 
 // The tiles for which `wanted(x0, y0)`, merged along rows.
@@ -71,7 +72,26 @@ std::vector<gpu::Tile> tilesWhere(int width, int height, const Wanted& wanted) {
 
 std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance) {
   return tilesWhere(first.width, first.height, [&](int x0, int y0) {
-    return exceeds(first, x0, y0, tolerance, [&](int x, int y) { return roughness(first, x, y); });
+    return exceeds(first, x0, y0, tolerance, 4.0f, [&](int x, int y) { return roughness(first, x, y); });
+  });
+}
+
+std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance) {
+  return tilesWhere(sums.width, sums.height, [&](int x0, int y0) {
+    return exceeds(sums, x0, y0, tolerance, 2.0f, [&](int x, int y) {
+      // Of three by three pixels, as the resolve takes the dither out.
+      float first = 0.0f, second = 0.0f;
+      for (int v = std::max(y - 1, y0); v <= std::min({y + 1, y0 + kTilePx - 1, sums.height - 1}); ++v)
+        for (int u = std::max(x - 1, x0); u <= std::min({x + 1, x0 + kTilePx - 1, sums.width - 1}); ++u) {
+          const float* a = &before.data[before.index(u, v)];
+          const float* both = &sums.data[sums.index(u, v)];
+          const float later[3] = {both[0] - a[0], both[1] - a[1], both[2] - a[2]}, count = both[3] - a[3];
+          if (count <= 0.0f) return 0.0f;
+          first += luminanceOf(a) / a[3];
+          second += luminanceOf(later) / count;
+        }
+      return std::abs(second - first) / std::max(first + second, 1e-12f);
+    });
   });
 }
 

@@ -187,7 +187,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   const gpu::Framebuffer target(sum);
   target.clear();
   // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
-  // be rough.
+  // be rough; whenever their number has doubled, what they agree on is done.
+  Image<float> before;
   std::vector<gpu::Tile> tiles = rowBands(width, height);
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
@@ -198,7 +199,11 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
       gpu::finish();  // so that progress is true and Ctrl-C is heard
       progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
     }
-    if (i == 0) tiles = roughTiles(target.readPicture(), settings.tolerance);
+    const int count = i + 1;
+    if (count == settings.subframes || tiles.empty() || (count & i) != 0) continue;
+    Image<float> now = target.readPicture();
+    tiles = i == 0 ? roughTiles(now, settings.tolerance) : unsettledTiles(before, now, settings.tolerance);
+    before = std::move(now);
   }
   if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
   done("march");

@@ -25,22 +25,43 @@ TEST(RoughTiles, FlatAreasAndGradientsAreSettled) {
   EXPECT_TRUE(roughTiles(grey(1, 1, [](int, int) { return 1.0f; }), 0.01f).empty());
 }
 
-// Tiles are 32 pixels; they count from the bottom, and neighbours in a row are one.
+// Tiles are 16 pixels; they count from the bottom, and neighbours in a row are one.
 TEST(RoughTiles, AnEdgeMarksItsTilesAlone) {
   const auto tiles = roughTiles(
       grey(128, 96, [](int x, int y) { return x >= 40 && x < 80 && y < 10 ? 2.0f : 1.0f; }), 0.01f);
   ASSERT_EQ(tiles.size(), 1u);
   EXPECT_EQ(tiles[0].x, 32);
   EXPECT_EQ(tiles[0].width, 64);
-  EXPECT_EQ(tiles[0].y, 64);
-  EXPECT_EQ(tiles[0].height, 32);
+  EXPECT_EQ(tiles[0].y, 80);
+  EXPECT_EQ(tiles[0].height, 16);
 }
 
 TEST(RoughTiles, GrainIsRough) {
   const auto tiles =
       roughTiles(grey(64, 64, [](int x, int y) { return (x * 7 + y * 3) % 5 ? 1.0f : 1.1f; }), 0.01f);
-  ASSERT_EQ(tiles.size(), 2u);
+  ASSERT_EQ(tiles.size(), 4u);
   EXPECT_EQ(tiles[0].width, 64);
+}
+
+// Later sub-frames go on where the halves disagree alone, and not where there have been none.
+TEST(UnsettledTiles, AreThoseWhoseHalvesDisagree) {
+  const Image<float> before = grey(64, 16, [](int x, int) { return x % 2 ? 1.0f : 3.0f; });
+  Image<float> sums = before;
+  for (int y = 0; y < 16; ++y)
+    for (int x = 16; x < 64; ++x) {
+      const float times = x < 32 ? 1.0f : x < 48 ? 1.05f : 1.015f;
+      for (int c = 0; c < 3; ++c) sums.at(x, y, c) += times * before.at(x, y, c);
+      sums.at(x, y, 3) += 1.0f;
+    }
+  // Five percent between two are two and a half of their mean.
+  const auto tiles = unsettledTiles(before, sums, 0.012f);
+  ASSERT_EQ(tiles.size(), 1u);
+  EXPECT_EQ(tiles[0].x, 32);
+  EXPECT_EQ(tiles[0].width, 16);
+  EXPECT_EQ(unsettledTiles(before, sums, 0.005f).front().width, 32);
+  // A single pixel is enough.
+  sums.at(20, 5, 1) *= 1.2f;
+  EXPECT_EQ(unsettledTiles(before, sums, 0.012f).front().x, 16);
 }
 
 // Means by the counts in alpha; the dither within a surface goes, an edge stays.
