@@ -88,7 +88,7 @@ AirRay airRay(ivec2 column) {
     }
   }
 #endif
-  vec2 tops = WELKIN_BANDS == 0 ? vec2(1.0, -1.0) : sphereCrossings(uBands[max(WELKIN_BANDS - 1, 0)].y, dir.z);
+  vec2 tops = uBandCount == 0 ? vec2(1.0, -1.0) : sphereCrossings(uCloudTopM, dir.z);
   return AirRay(dir, groundM, tops.x <= tops.y ? max(tops.y, 0.0) : 0.0, cosSun, phases, dither);
 }
 

@@ -9,13 +9,13 @@ float airDither = 0.5;            // a pass's, in [0, 1): where in their stretch
 
 const int kAirSamples = 4;
 
-bool airShadowsKnown() { return WELKIN_BANDS != 0 && uLineTowardsSun >= 0.5; }
+bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
 
 // The share of what the air at a distance would add in the sun that it does add, but for what sheets take. Light that clouds turn by some
 // degrees only lights the air behind them as if it had not been turned.
 float litAirAt(vec3 dir, float t) {
   vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
-  return q.z >= uBands[max(WELKIN_BANDS - 1, 0)].y ? 1.0 : exp(-kDropletAside * cloudDepthToSun(uLightVolume, q));
+  return q.z >= uCloudTopM ? 1.0 : exp(-kDropletAside * cloudDepthToSun(uLightVolume, q));
 }
 
 // The share of what the air of [0, distanceM] would add in the sun that it does add. through: what it lets through.
@@ -52,8 +52,8 @@ vec3 cloudsThroughAir(vec3 dir, vec3 luminance, float hidden, vec3 through) {
 
 // What they take from the clear sky behind all clouds, for an eye beneath their tops.
 vec3 shadowsInSky(vec3 dir) {
-  if (WELKIN_BANDS == 0) return vec3(0.0);
-  float topM = uBands[max(WELKIN_BANDS - 1, 0)].y;
+  if (uBandCount == 0) return vec3(0.0);
+  float topM = uCloudTopM;
   if (uEyeM >= topM) return vec3(0.0);
   float distanceM = sphereCrossings(topM, dir.z).y;
   vec3 lit, through;

@@ -9,14 +9,13 @@
 const int kMaxBands = 8;
 const int kCascades = 3;
 
-// Of each band base m, top m, first slice, last slice. How many there are is compiled in where the order of the march is, so that all
-// indices are constants.
-#ifdef WELKIN_BANDS
+// Of each band base m, top m, first slice, last slice; those that there are not lie above everything. Where the order of the march is compiled
+// in, their number is too (WELKIN_BANDS).
 WELKIN_FIXED uniform vec4 uBands[kMaxBands];
-#else
-uniform vec4 uBands[kMaxBands];
 uniform int uBandCount;
-#define WELKIN_BANDS uBandCount
+uniform float uCloudTopM;          // top of the highest band
+#ifndef WELKIN_BANDS
+#define WELKIN_BANDS kMaxBands
 #endif
 uniform float uSliceCount;         // of one cascade
 WELKIN_FIXED uniform float uCascadeHalfM[kCascades];
@@ -79,7 +78,7 @@ CloudDepths cloudDepthsAt(sampler3D volume, vec3 q) {
 
 // Depth towards the sun from anywhere outside the bands too, as for the ground: along the line to the next band, then as stored.
 float cloudDepthToSun(sampler3D volume, vec3 q) {
-  if (WELKIN_BANDS == 0 || uLineTowardsSun < 0.5) return 0.0;
+  if (uBandCount == 0 || uLineTowardsSun < 0.5) return 0.0;
   vec3 p = q;
   bool inside = false;
   float nextBase = 1e9;

@@ -27,9 +27,9 @@ uniform mat4 uLastClipFromEnu;    // positions from the last eye to the last pic
 uniform vec3 uEyeMoveM;           // since then
 uniform float uEyeM;
 uniform float uEarthRadiusM;
-uniform vec4 uBands[8];           // base, top
-uniform int uBandCount;
-uniform vec4 uBandMoveM[8];       // xy: with the wind since then
+const int kMaxBands = 8;
+WELKIN_FIXED uniform vec4 uBands[kMaxBands];      // base, top: as in lib/light_volume.glsl
+WELKIN_FIXED uniform vec4 uBandMoveM[kMaxBands];  // xy: with the wind since then
 
 layout(location = 0) out vec4 outHistory;
 layout(location = 1) out vec4 outCount;
@@ -94,7 +94,7 @@ void main() {
       vec3 moved = vec3(0.0);
       if (depthM < 1e8) {
         float height = heightAboveGround(vec3(0.0, 0.0, uEyeM) + dir * depthM, uEarthRadiusM);
-        for (int i = 0; i < uBandCount; ++i)
+        for (int i = 0; i < kMaxBands; ++i)
           if (i == 0 || height >= uBands[i].x) moved = vec3(vec2(uBandMoveM[i]), 0.0);
       }
       vec4 was = uLastClipFromEnu * vec4(dir * min(depthM, 1e6) - moved + uEyeMoveM, 1.0);

@@ -273,7 +273,8 @@ Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {
   u.emplace_back("uSliceCount", static_cast<float>(std::max<std::size_t>(layout.heightsM.size(), 1)));
   u.emplace_back("uLine", layout.line);
   u.emplace_back("uLineTowardsSun", layout.towardsSun ? 1.0f : 0.0f);
-  std::vector<glm::vec4> bands(field::kMaxLayers, glm::vec4(0.0f));
+  u.emplace_back("uCloudTopM", layout.bands.empty() ? 0.0f : layout.bands.back().topM);
+  std::vector<glm::vec4> bands(field::kMaxLayers, glm::vec4(1e9f, 2e9f, 0.0f, 0.0f));
   for (std::size_t i = 0; i < layout.bands.size(); ++i) {
     const auto& b = layout.bands[i];
     bands[i] = {b.baseM, b.topM, static_cast<float>(b.firstSlice), static_cast<float>(b.lastSlice)};
