@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "welkin/core/error.h"
-#include "welkin/gpu/draw.h"
 
 namespace welkin::gpu {
 namespace {
@@ -277,8 +276,13 @@ bool Context::hasCompute() const {
   return impl_->api == Api::kGl && impl_->version >= 43;
 }
 
+bool isSoftwareDevice(std::string_view name) {
+  for (const char* rasteriser : {"llvmpipe", "softpipe", "swrast", "SwiftShader"})
+    if (name.find(rasteriser) != std::string_view::npos) return true;
+  return false;
+}
 bool Context::isSoftware() const {
-  return gpu::isSoftware();
+  return isSoftwareDevice(impl_->device);
 }
 
 int Context::maxTextureSize2D() const {

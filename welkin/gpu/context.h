@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace welkin::gpu {
@@ -22,6 +23,9 @@ struct ContextOptions {
   Api api = Api::kGl;
   bool debug = false;  // record what the driver reports as errors, see takeErrors()
 };
+
+// Whether a device is a rasteriser on the CPU, by the name that its driver gives it (GL_RENDERER).
+bool isSoftwareDevice(std::string_view name);
 
 class Context {
  public:

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/gpu/draw.h"
 
-#include <string_view>
-
+#include "welkin/gpu/context.h"
 #include "welkin/gpu/gl_format.h"
 
 namespace welkin::gpu {
@@ -49,9 +48,7 @@ bool canCompute() {
 
 bool isSoftware() {
   const auto* device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader"})
-    if (device && std::string_view(device).find(name) != std::string_view::npos) return true;
-  return false;
+  return device && isSoftwareDevice(device);
 }
 
 void bindImage(int unit, const Texture& texture, Access access) {

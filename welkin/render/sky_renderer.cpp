@@ -2,6 +2,7 @@
 #include "welkin/render/sky_renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -199,8 +200,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
       gpu::finish();  // so that progress is true and Ctrl-C is heard
       progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
     }
-    const int count = i + 1;
-    if (count == settings.subframes || tiles.empty() || (count & i) != 0) continue;
+    const bool doubled = std::has_single_bit(static_cast<unsigned>(i + 1));
+    if (!doubled || i + 1 == settings.subframes || tiles.empty()) continue;
     Image<float> now = target.readPicture();
     tiles = i == 0 ? roughTiles(now, settings.tolerance) : unsettledTiles(before, now, settings.tolerance);
     before = std::move(now);

@@ -142,7 +142,11 @@ class Assembler {
     addFile(source_.files.size() - 1, text);
   }
 
-  ShaderSource take() { return std::move(source_); }
+  ShaderSource take() {
+    if (!once_.empty() && !filled_)
+      throw Error(source_.files.front() + ": expected a line that begins with \"" + std::string(kMain) + '"');
+    return std::move(source_);
+  }
 
  private:
   void lineDirective(int line, std::size_t index) {
@@ -166,6 +170,7 @@ class Assembler {
     for (const std::string& name : once_)
       source_.text += "#ifdef " + name + "\nread_" + name + "();\n#endif\n";
     source_.text += "}\n";
+    filled_ = true;
   }
 
   void addInclude(std::string_view rest, std::size_t includer, int line) {
@@ -184,6 +189,7 @@ class Assembler {
   ShaderSource source_;
   std::string always_;
   std::vector<std::string> once_;
+  bool filled_ = false;  // main() has begun with their values
 };
 
 std::string_view versionLine(ShaderDialect dialect) {

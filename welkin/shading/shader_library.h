@@ -40,7 +40,8 @@ enum class UniformReads { kWhereUsed, kOnce };
 
 // The complete text of an entry point, named by its path below shaders/ ("pass/march.frag").
 // Throws Error when there is no such file, ParseError (file:line) when an include in it names none or cannot
-// be understood, IoError when WELKIN_SHADER_DIR cannot be read.
+// be understood, Error when uniforms are to be read once and main() does not begin as said, IoError when
+// WELKIN_SHADER_DIR cannot be read.
 ShaderSource assembleShader(std::string_view name, ShaderDialect dialect,
                             std::span<const ShaderDefine> defines = {},
                             UniformReads reads = UniformReads::kWhereUsed);

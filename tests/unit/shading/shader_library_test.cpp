@@ -192,6 +192,19 @@ TEST(ShaderLibrary, UniformsReadOnceAreTheSame) {
   }
 }
 
+// Without the line at which they are read, variables would be used that nobody has filled.
+TEST(ShaderLibrary, UniformsReadOnceWantAMainToReadThemIn) {
+  const DiskShaders disk;
+  disk.write("pass/x.frag", "uniform float uX;\nout vec4 c;\nvoid main()\n{ c = vec4(uX); }\n");
+  EXPECT_NO_THROW(assembleShader("pass/x.frag", ShaderDialect::kGl330));
+  try {
+    assembleShader("pass/x.frag", ShaderDialect::kGl330, {}, UniformReads::kOnce);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "pass/x.frag: expected a line that begins with \"void main() {\"");
+  }
+}
+
 // The line that a compiler names is the line of the file, before, between and after includes, in both
 // dialects, however uniforms are read.
 TEST(ShaderLibrary, CompilersNameTheRightFileAndLine) {
