@@ -12,6 +12,8 @@ constexpr std::size_t kTiers = 3;
 gpu::Program sheetProgram(std::size_t tier, bool volume) {
   const shading::ShaderDefines defines = {{"WELKIN_TIER", std::to_string(tier)},
                                           {"WELKIN_PATTERN_3D", volume ? "1" : "0"}};
+  // Not graphicsProgram(), which may have uniforms read at the beginning: where no loop reads them, that
+  // costs.
   constexpr auto kDialect = shading::ShaderDialect::kGl330;
   return gpu::Program::graphics(shading::assembleShader("pass/sheet.vert", kDialect, defines),
                                 shading::assembleShader("pass/sheet.frag", kDialect, defines));
