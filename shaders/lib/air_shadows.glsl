@@ -2,12 +2,19 @@
 // Shadows of volumes in the air: what of it the sun reaches along a ray, from the light volume at some places of chance.
 //
 // Needs lib/phase.glsl, lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
+// WELKIN_LIT_AIR: a pass has the shares before the sky and the ground from pass/live_air.
 
 #define WELKIN_AIR_SHADOWS
 
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
+#ifdef WELKIN_LIT_AIR
+vec2 litAirKnown;                 // a pass's: x: of the air up to the tops of the clouds, y: of that before the ground
+#endif
 
-const int kAirSamples = 4;
+#ifndef WELKIN_AIR_SAMPLES
+#define WELKIN_AIR_SAMPLES 4
+#endif
+const int kAirSamples = WELKIN_AIR_SAMPLES;
 
 bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
 
@@ -58,5 +65,10 @@ vec3 shadowsInSky(vec3 dir) {
   float distanceM = sphereCrossings(topM, dir.z).y;
   vec3 lit, through;
   aerialLit(dir, distanceM, lit, through);
-  return lit - shadedAir(dir, lit, through, litAir(dir, distanceM, through));
+#ifdef WELKIN_LIT_AIR
+  float share = litAirKnown.x;
+#else
+  float share = litAir(dir, distanceM, through);
+#endif
+  return lit - shadedAir(dir, lit, through, share);
 }

@@ -80,7 +80,10 @@ vec3 groundLuminance(vec3 dir, float distanceM) {
 
 vec3 groundThroughAir(vec3 dir, float groundM) {
   vec3 inscatter, through;
-#ifdef WELKIN_AIR_SHADOWS
+#if defined(WELKIN_LIT_AIR)
+  aerialLit(dir, groundM, inscatter, through);
+  inscatter = shadedAir(dir, inscatter, through, litAirKnown.y);
+#elif defined(WELKIN_AIR_SHADOWS)
   aerialShaded(dir, groundM, inscatter, through);
 #else
   aerial(dir, groundM, inscatter, through);

@@ -16,6 +16,8 @@ uniform float uPixelRad;
 uniform float uScale;             // written value for each cd/m2
 #ifdef WELKIN_VOLUMES
 uniform sampler3D uLightVolume;
+uniform sampler2D uLitAir;        // pass/live_air of the same view
+uniform float uLitAirPx;          // pixels a side of its texels
 #endif
 
 #ifdef WELKIN_SPLATS
@@ -27,6 +29,7 @@ layout(location = 0) out vec4 outColor;
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
+#define WELKIN_LIT_AIR
 #include "lib/air_shadows.glsl"
 #endif
 
@@ -44,8 +47,12 @@ float groundSunlight(vec2 q) {
 #include "lib/background.glsl"
 
 void main() {
-  vec2 clip = (gl_FragCoord.xy - uViewportPx.xy) / uViewportPx.zw * 2.0 - 1.0;
+  vec2 px = gl_FragCoord.xy - uViewportPx.xy;
+  vec2 clip = px / uViewportPx.zw * 2.0 - 1.0;
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
+#ifdef WELKIN_VOLUMES
+  litAirKnown = vec2(textureLod(uLitAir, px / (uLitAirPx * vec2(textureSize(uLitAir, 0))), 0.0));
+#endif
 #if WELKIN_BACKDROP == 1
   vec3 luminance = skyLuminance(dir);
 #elif WELKIN_BACKDROP == 2

@@ -93,8 +93,9 @@ struct LiveSky::Impl {
   void refresh();
   void updateBox(const scene::SkyBox& wanted, const Others& with);
   void updateAmbient();
-  void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale);
-  void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target, float scale);
+  void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
+  void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
+                   const LiveOptions& options);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
                  float scale);
   void drawSheets(const shading::View& view, const shading::ViewParts& parts, const gpu::Target& target,
@@ -210,9 +211,11 @@ void LiveSky::Impl::updateAmbient() {
   }
 }
 
-void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, float scale) {
+void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target,
+                                 const LiveOptions& options) {
+  if (others.volumes) volumes->shadeAir(options.view, *state, tables, view);
   if (box) {
-    setBackdrop(boxBackdrop(), view, target, scale);
+    setBackdrop(boxBackdrop(), view, target, options);
     box->bind(boxBackdrop());
     triangle.draw(boxBackdrop(), target);
     return;
@@ -229,7 +232,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
     for (int i = 0; i < tiles.count; ++i) {
       const shading::BackdropTile& t = tiles.tiles[static_cast<std::size_t>(i)];
       if (static_cast<std::size_t>(t.kind) != kind) continue;
-      if (!set) setBackdrop(programs[kind], view, target, scale);
+      if (!set) setBackdrop(programs[kind], view, target, options);
       set = true;
       triangle.draw(programs[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
     }
@@ -237,14 +240,14 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
 }
 
 void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
-                                float scale) {
+                                const LiveOptions& options) {
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
   p.set("uEnuFromCamera", view.enuFromCamera);
   p.set("uRayScale", view.rayScale);
   p.set("uViewportPx", glm::vec4(target.area.x, target.area.y, target.area.width, target.area.height));
   p.set("uPixelRad", view.pixelRad);
-  p.set("uScale", scale);
+  p.set("uScale", options.scale);
   tables.bind(p);
   clouds->bind(p);
   std::size_t shadows = 0;
@@ -258,7 +261,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
     p.bind(kShadowPatterns[shadows], sheet.flat);
     ++shadows;
   }
-  if (others.volumes) volumes->setLight(p, *state, view);
+  if (others.volumes) volumes->setShadows(p, options.view, *state, view);
   if (others.splats) splats->setShadow(p);
   p.set("uShadowMean", mean);
   p.set("uShadowCount", static_cast<int>(shadows));
@@ -324,7 +327,7 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
   if (m.others.volumes)
     m.volumes->march(options.view, *m.state, m.sheets, *m.clouds, m.tables, parts, target.area.width,
                      target.area.height);
-  if (options.backdrop) m.drawBackdrop(parts, target, options.scale);
+  if (options.backdrop) m.drawBackdrop(parts, target, options);
   if (m.others.volumes) {
     // Whichever is nearer by the middle of its heights comes last.
     const auto away = [&](double heightM) { return std::abs(heightM - parts.eyeM.z); };

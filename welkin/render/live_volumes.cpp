@@ -45,6 +45,7 @@ glm::vec2 jitterStep(int round) {
 }
 
 constexpr gpu::TextureOptions kColour{.format = gpu::Format::kRgba32F},
+    kShares{.format = gpu::Format::kRg16F},
     kNumber{.format = gpu::Format::kR32F, .filter = gpu::Filter::kNearest};
 
 bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
@@ -55,7 +56,8 @@ bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
 }  // namespace
 
 LiveVolumes::LiveVolumes()
-    : resolve_(fullscreenProgram("pass/live_resolve.frag")),
+    : air_(fullscreenProgram("pass/live_air.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}})),
+      resolve_(fullscreenProgram("pass/live_resolve.frag")),
       show_(fullscreenProgram("pass/live_show.frag")) {}
 
 void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLayer>& sheets) {
@@ -100,6 +102,7 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
   reach_ = 1.0f / (3.0f * (layout_.bands.empty() ? 1e-4f : settings.noise));
   setScene(*marching_, state);
+  setUniforms(air_, shading::lightVolumeUniforms(layout_));
   setUniforms(resolve_, shading::lightVolumeUniforms(layout_));
 }
 
@@ -113,6 +116,7 @@ void LiveVolumes::setScene(gpu::Program& p, const scene::SkyState& state) const 
 
 void LiveVolumes::update(const shading::Uniforms& skyUniforms) {
   setUniforms(*marching_, skyUniforms);
+  setUniforms(air_, skyUniforms);
 }
 
 LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t bands) {
@@ -120,8 +124,10 @@ LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t b
   const int w = (width + kBlock - 1) / kBlock, h = (height + kBlock - 1) / kBlock;
   m.fresh = gpu::Texture2D(w, h, kColour);
   m.freshDepth = gpu::Texture2D(w, h, kNumber);
+  m.litAir = gpu::Texture2D(w, h, kShares);
   m.march.attach(0, m.fresh);
   m.march.attach(1, m.freshDepth);
+  m.air.attach(0, m.litAir);
   for (std::size_t i = 0; i < 2; ++i) {
     m.history[i] = gpu::Texture2D(width, height, kColour);
     m.count[i] = gpu::Texture2D(width, height, kNumber);
@@ -292,6 +298,29 @@ void LiveVolumes::march(std::size_t view, const scene::SkyState& state, const st
   m.parts = parts;
   m.seconds = state.secondsAfter;
   m.light = lightNumber_;
+}
+
+void LiveVolumes::shadeAir(std::size_t view, const scene::SkyState& state, const SkyTextures& tables,
+                           const shading::ViewParts& parts) {
+  const Memory& m = *memories_[view];
+  gpu::Program& p = air_;
+  setLight(p, state, parts);
+  p.set("uEyeM", static_cast<float>(parts.eyeM.z));
+  p.set("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
+  p.set("uEnuFromCamera", parts.enuFromCamera);
+  p.set("uRayScale", parts.rayScale);
+  p.set("uPixelRad", parts.pixelRad);
+  p.set("uSizePx", glm::vec2(m.history[0].width(), m.history[0].height()));
+  p.set("uBlock", static_cast<float>(kBlock));
+  tables.bind(p);
+  triangle_.draw(p, m.air);
+}
+
+void LiveVolumes::setShadows(gpu::Program& p, std::size_t view, const scene::SkyState& state,
+                             const shading::ViewParts& parts) const {
+  setLight(p, state, parts);
+  p.set("uLitAirPx", static_cast<float>(kBlock));
+  p.bind("uLitAir", memories_[view]->litAir);
 }
 
 void LiveVolumes::show(std::size_t view, const gpu::Target& target, float scale) {

@@ -49,6 +49,12 @@ class LiveVolumes {
   void march(std::size_t view, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
              const CloudTextures& clouds, const SkyTextures& tables, const shading::ViewParts& parts,
              int width, int height);
+  // For what is drawn behind it, after march() of the same view: finds the shadows of the volumes in the air,
+  // and gives them to programs, with those on the ground.
+  void shadeAir(std::size_t view, const scene::SkyState& state, const SkyTextures& tables,
+                const shading::ViewParts& parts);
+  void setShadows(gpu::Program& program, std::size_t view, const scene::SkyState& state,
+                  const shading::ViewParts& parts) const;
   // Draws it over the target. After march() of the same view.
   void show(std::size_t view, const gpu::Target& target, float scale);
 
@@ -78,8 +84,9 @@ class LiveVolumes {
   // What is remembered of a view.
   struct Memory {
     gpu::Texture2D fresh, freshDepth;
+    gpu::Texture2D litAir;
     std::array<gpu::Texture2D, 2> history, count;
-    gpu::Framebuffer march;
+    gpu::Framebuffer march, air;
     std::array<gpu::Framebuffer, 2> resolved;
     std::size_t now = 0;  // of the two
     bool any = false;     // something is in it
@@ -116,7 +123,7 @@ class LiveVolumes {
   gpu::FullscreenTriangle triangle_;
   ProgramVariants marches_{"pass/live_march.frag"};
   gpu::Program* marching_ = nullptr;  // of the scene
-  gpu::Program resolve_, show_;
+  gpu::Program air_, resolve_, show_;
   LightVolumePass lightVolume_;
   std::optional<Swept> light_, sweeping_;
   int lightNumber_ = 0;
