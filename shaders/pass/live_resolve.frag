@@ -10,7 +10,9 @@
 #include "lib/clouds.glsl"
 
 uniform sampler2D uFresh;         // pass/live_march
-uniform sampler2D uFreshDepth;
+uniform sampler2D uMean;          // pass/live_spread
+uniform sampler2D uSpread;
+uniform sampler2D uNearest;
 uniform sampler2D uHistory;       // luminance and transmittance
 uniform sampler2D uCount;         // samples that a pixel of it is the mean of
 uniform int uBlock;
@@ -19,7 +21,6 @@ uniform int uHasHistory;
 uniform int uStill;               // neither eye nor time has moved
 uniform float uStillWeight;       // then of a fresh sample
 uniform float uMostCount;         // samples that a pixel in motion remembers
-uniform float uSpread;            // standard deviations to both sides
 
 uniform mat3 uEnuFromCamera;
 uniform vec4 uRayScale;
@@ -34,7 +35,8 @@ WELKIN_FIXED uniform vec4 uBandMoveM[kMaxBands];  // xy: with the wind since the
 layout(location = 0) out vec4 outHistory;
 layout(location = 1) out vec4 outCount;
 
-// Catmull and Rom's cubic in nine fetches (J. Jimenez 2016, "Filmic SMAA"): bilinear filtering frame after frame would blur.
+// Catmull and Rom's cubic in five fetches, without its corners (J. Jimenez 2016, "Filmic SMAA"): bilinear filtering frame after frame would
+// blur.
 vec4 sharpHistory(vec2 uv) {
   vec2 size = vec2(textureSize(uHistory, 0));
   vec2 at = uv * size - 0.5;
@@ -46,12 +48,10 @@ vec4 sharpHistory(vec2 uv) {
   vec2 w3 = f * f * (-0.5 + 0.5 * f);
   vec2 w12 = w1 + w2;
   vec2 p0 = centre - 1.0 / size, p3 = centre + 2.0 / size, p12 = centre + w2 / w12 / size;
-  return (textureLod(uHistory, vec2(p0.x, p0.y), 0.0) * w0.x + textureLod(uHistory, vec2(p12.x, p0.y), 0.0) * w12.x +
-          textureLod(uHistory, vec2(p3.x, p0.y), 0.0) * w3.x) * w0.y +
-         (textureLod(uHistory, vec2(p0.x, p12.y), 0.0) * w0.x + textureLod(uHistory, p12, 0.0) * w12.x +
-          textureLod(uHistory, vec2(p3.x, p12.y), 0.0) * w3.x) * w12.y +
-         (textureLod(uHistory, vec2(p0.x, p3.y), 0.0) * w0.x + textureLod(uHistory, vec2(p12.x, p3.y), 0.0) * w12.x +
-          textureLod(uHistory, vec2(p3.x, p3.y), 0.0) * w3.x) * w3.y;
+  vec4 sum = textureLod(uHistory, p12, 0.0) * (w12.x * w12.y) + textureLod(uHistory, vec2(p12.x, p0.y), 0.0) * (w12.x * w0.y) +
+             textureLod(uHistory, vec2(p12.x, p3.y), 0.0) * (w12.x * w3.y) + textureLod(uHistory, vec2(p0.x, p12.y), 0.0) * (w0.x * w12.y) +
+             textureLod(uHistory, vec2(p3.x, p12.y), 0.0) * (w3.x * w12.y);
+  return sum / (w12.x * w12.y + w12.x * (w0.y + w3.y) + w12.y * (w0.x + w3.x));
 }
 
 void main() {
@@ -69,20 +69,8 @@ void main() {
       count += 1.0;
     }
   } else {
-    ivec2 last = textureSize(uFresh, 0) - 1;
-    vec4 mean = vec4(0.0), square = vec4(0.0);
-    float depthM = 1e9;
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x) {
-        ivec2 at = clamp(block + ivec2(x, y), ivec2(0), last);
-        vec4 sampled = texelFetch(uFresh, at, 0);
-        mean += sampled;
-        square += sampled * sampled;
-        float there = texelFetch(uFreshDepth, at, 0).x;
-        if (there > 0.0) depthM = min(depthM, there);
-      }
-    mean /= 9.0;
-    vec4 spread = uSpread * sqrt(max(square / 9.0 - mean * mean, 0.0));
+    vec4 mean = texelFetch(uMean, block, 0), spread = texelFetch(uSpread, block, 0);
+    float depthM = texelFetch(uNearest, block, 0).x;
     vec2 uvFresh = ((vec2(px) - vec2(uCell)) / float(uBlock) + 0.5) / vec2(textureSize(uFresh, 0));
     vec4 around = textureLod(uFresh, uvFresh, 0.0);
     count = 0.0;

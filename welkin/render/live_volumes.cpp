@@ -57,6 +57,7 @@ bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
 
 LiveVolumes::LiveVolumes()
     : air_(fullscreenProgram("pass/live_air.frag", shading::ShaderDefines{{"WELKIN_EACH_LAYER(CALL)", ""}})),
+      spread_(fullscreenProgram("pass/live_spread.frag")),
       resolve_(fullscreenProgram("pass/live_resolve.frag")),
       show_(fullscreenProgram("pass/live_show.frag")) {}
 
@@ -124,9 +125,15 @@ LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t b
   const int w = (width + kBlock - 1) / kBlock, h = (height + kBlock - 1) / kBlock;
   m.fresh = gpu::Texture2D(w, h, kColour);
   m.freshDepth = gpu::Texture2D(w, h, kNumber);
+  m.mean = gpu::Texture2D(w, h, kColour);
+  m.spread = gpu::Texture2D(w, h, kColour);
+  m.nearest = gpu::Texture2D(w, h, kNumber);
   m.litAir = gpu::Texture2D(w, h, kShares);
   m.march.attach(0, m.fresh);
   m.march.attach(1, m.freshDepth);
+  m.span.attach(0, m.mean);
+  m.span.attach(1, m.spread);
+  m.span.attach(2, m.nearest);
   m.air.attach(0, m.litAir);
   for (std::size_t i = 0; i < 2; ++i) {
     m.history[i] = gpu::Texture2D(width, height, kColour);
@@ -245,6 +252,12 @@ void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,
 
 void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading::ViewParts& parts,
                           bool still) {
+  if (!still) {
+    spread_.set("uDeviations", kSpread);
+    spread_.bind("uFresh", m.fresh);
+    spread_.bind("uFreshDepth", m.freshDepth);
+    triangle_.draw(spread_, m.span);
+  }
   gpu::Program& p = resolve_;
   for (std::size_t b = 0; b < bandMoves_.size(); ++b) {
     const glm::vec2 driftM = driftOfBand(state, b);
@@ -258,7 +271,6 @@ void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading
   p.set("uStill", still ? 1 : 0);
   p.set("uStillWeight", stillWeight(m.frame / kFramesInRound));
   p.set("uMostCount", kMostCount);
-  p.set("uSpread", kSpread);
   p.set("uEnuFromCamera", parts.enuFromCamera);
   p.set("uRayScale", parts.rayScale);
   p.set("uLastClipFromEnu", m.parts.clipFromEnu);
@@ -266,7 +278,9 @@ void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading
   p.set("uEyeM", static_cast<float>(parts.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   p.bind("uFresh", m.fresh);
-  p.bind("uFreshDepth", m.freshDepth);
+  p.bind("uMean", m.mean);
+  p.bind("uSpread", m.spread);
+  p.bind("uNearest", m.nearest);
   p.bind("uHistory", m.history[m.now]);
   p.bind("uCount", m.count[m.now]);
   m.now = 1 - m.now;

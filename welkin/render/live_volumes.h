@@ -84,9 +84,10 @@ class LiveVolumes {
   // What is remembered of a view.
   struct Memory {
     gpu::Texture2D fresh, freshDepth;
+    gpu::Texture2D mean, spread, nearest;  // of fresh ones, about each block
     gpu::Texture2D litAir;
     std::array<gpu::Texture2D, 2> history, count;
-    gpu::Framebuffer march, air;
+    gpu::Framebuffer march, span, air;
     std::array<gpu::Framebuffer, 2> resolved;
     std::size_t now = 0;  // of the two
     bool any = false;     // something is in it
@@ -123,7 +124,7 @@ class LiveVolumes {
   gpu::FullscreenTriangle triangle_;
   ProgramVariants marches_{"pass/live_march.frag"};
   gpu::Program* marching_ = nullptr;  // of the scene
-  gpu::Program air_, resolve_, show_;
+  gpu::Program air_, spread_, resolve_, show_;
   LightVolumePass lightVolume_;
   std::optional<Swept> light_, sweeping_;
   int lightNumber_ = 0;
