@@ -2,14 +2,10 @@
 // Shadows of volumes in the air: what of it the sun reaches along a ray, from the light volume at some places of chance.
 //
 // Needs lib/phase.glsl, lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
-// WELKIN_LIT_AIR: a pass has the shares before the sky and the ground from pass/live_air.
 
 #define WELKIN_AIR_SHADOWS
 
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
-#ifdef WELKIN_LIT_AIR
-vec2 litAirKnown;                 // a pass's: x: of the air up to the tops of the clouds, y: of that before the ground
-#endif
 
 #ifndef WELKIN_AIR_SAMPLES
 #define WELKIN_AIR_SAMPLES 4
@@ -65,10 +61,5 @@ vec3 shadowsInSky(vec3 dir) {
   float distanceM = sphereCrossings(topM, dir.z).y;
   vec3 lit, through;
   aerialLit(dir, distanceM, lit, through);
-#ifdef WELKIN_LIT_AIR
-  float share = litAirKnown.x;
-#else
-  float share = litAir(dir, distanceM, through);
-#endif
-  return lit - shadedAir(dir, lit, through, share);
+  return lit - shadedAir(dir, lit, through, litAir(dir, distanceM, through));
 }

@@ -3,7 +3,7 @@
 //
 // Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
 // light that clouds let through to the ground at q. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
-// the air too.
+// the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
 #include "lib/ground.glsl"
 
@@ -80,9 +80,9 @@ vec3 groundLuminance(vec3 dir, float distanceM) {
 
 vec3 groundThroughAir(vec3 dir, float groundM) {
   vec3 inscatter, through;
-#if defined(WELKIN_LIT_AIR)
+#if defined(WELKIN_AIR_SHADOWS_KNOWN)
   aerialLit(dir, groundM, inscatter, through);
-  inscatter = shadedAir(dir, inscatter, through, litAirKnown.y);
+  inscatter = shadedAir(dir, inscatter, through, airShadows.w);
 #elif defined(WELKIN_AIR_SHADOWS)
   aerialShaded(dir, groundM, inscatter, through);
 #else
@@ -93,7 +93,9 @@ vec3 groundThroughAir(vec3 dir, float groundM) {
 
 vec3 skyLuminance(vec3 dir) {
   vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
-#ifdef WELKIN_AIR_SHADOWS
+#if defined(WELKIN_AIR_SHADOWS_KNOWN)
+  sky = max(sky - vec3(airShadows), 0.0);
+#elif defined(WELKIN_AIR_SHADOWS)
   sky = max(sky - shadowsInSky(dir), 0.0);
 #endif
   return sky;

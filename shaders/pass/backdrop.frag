@@ -16,8 +16,8 @@ uniform float uPixelRad;
 uniform float uScale;             // written value for each cd/m2
 #ifdef WELKIN_VOLUMES
 uniform sampler3D uLightVolume;
-uniform sampler2D uLitAir;        // pass/live_air of the same view
-uniform float uLitAirPx;          // pixels a side of its texels
+uniform sampler2D uAirShadows;    // pass/live_air of the same view
+uniform float uAirShadowsPx;      // pixels a side of its texels
 #endif
 
 #ifdef WELKIN_SPLATS
@@ -29,8 +29,8 @@ layout(location = 0) out vec4 outColor;
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
-#define WELKIN_LIT_AIR
-#include "lib/air_shadows.glsl"
+#define WELKIN_AIR_SHADOWS_KNOWN
+vec4 airShadows;
 #endif
 
 float groundSunlight(vec2 q) {
@@ -51,7 +51,7 @@ void main() {
   vec2 clip = px / uViewportPx.zw * 2.0 - 1.0;
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
 #ifdef WELKIN_VOLUMES
-  litAirKnown = vec2(textureLod(uLitAir, px / (uLitAirPx * vec2(textureSize(uLitAir, 0))), 0.0));
+  airShadows = textureLod(uAirShadows, px / (uAirShadowsPx * vec2(textureSize(uAirShadows, 0))), 0.0);
 #endif
 #if WELKIN_BACKDROP == 1
   vec3 luminance = skyLuminance(dir);

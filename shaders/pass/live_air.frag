@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What clouds leave of the sun in the air before the sky and before the ground, for a backdrop (pass/backdrop): a texel for each block of
-// pixels, as shadows in the air are soft.
+// Shadows of clouds in the air before the sky and before the ground, for a backdrop (pass/backdrop): a texel for each block of pixels, as
+// they are soft.
 
 #define WELKIN_AIR_SAMPLES 8
 #include "lib/phase.glsl"
@@ -18,7 +18,7 @@ uniform vec2 uSizePx;             // of the whole picture
 uniform float uBlock;             // pixels a side of a texel
 uniform float uPixelRad;
 
-layout(location = 0) out vec2 outLit;  // x: of the air up to the tops of the clouds, y: of that before the ground
+layout(location = 0) out vec4 outAir;  // xyz: what they take from the sky, cd/m2; w: the share of the air before the ground that is lit
 
 void main() {
   vec2 clip = uBlock * gl_FragCoord.xy / uSizePx * 2.0 - 1.0;
@@ -26,7 +26,7 @@ void main() {
   // Texels at the horizon are read from both of its sides, and hold what is there on either.
   float horizon = -sqrt(uEyeM * (2.0 * uEarthRadiusM + uEyeM)) / (uEarthRadiusM + uEyeM), margin = 2.0 * uBlock * uPixelRad;
   int first = uEyeM < uCloudTopM && dir.z > horizon - margin ? 0 : 1, last = dir.z < horizon + margin ? 2 : 1;
-  outLit = vec2(1.0);
+  outAir = vec4(0.0, 0.0, 0.0, 1.0);
   for (int side = first; side < last; ++side) {  // a loop, as a rasteriser on the processor runs both sides of a branch
     bool sky = side == 0;
     vec3 there = normalize(vec3(vec2(dir), sky ? max(dir.z, horizon) : min(dir.z, horizon - 1e-6)));
@@ -35,7 +35,7 @@ void main() {
     vec3 inscatter, through;
     aerialLit(there, distanceM, inscatter, through);
     float lit = litAir(there, distanceM, through);
-    if (sky) outLit.x = lit;
-    else outLit.y = lit;
+    if (sky) outAir = vec4(inscatter - shadedAir(there, inscatter, through, lit), outAir.w);
+    else outAir.w = lit;
   }
 }

@@ -36,22 +36,26 @@ layout(location = 0) out vec4 outHistory;
 layout(location = 1) out vec4 outCount;
 
 // Catmull and Rom's cubic in five fetches, without its corners (J. Jimenez 2016, "Filmic SMAA"): bilinear filtering frame after frame would
-// blur.
-vec4 sharpHistory(vec2 uv) {
+// blur. With none it is 0: a loop, as a rasteriser on the processor runs both sides of a branch.
+vec4 sharpHistory(vec2 uv, int fetches) {
   vec2 size = vec2(textureSize(uHistory, 0));
   vec2 at = uv * size - 0.5;
   vec2 f = fract(at);
   vec2 centre = (floor(at) + 0.5) / size;
   vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
-  vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
   vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
   vec2 w3 = f * f * (-0.5 + 0.5 * f);
-  vec2 w12 = w1 + w2;
+  vec2 w12 = 1.0 - w0 - w3;
   vec2 p0 = centre - 1.0 / size, p3 = centre + 2.0 / size, p12 = centre + w2 / w12 / size;
-  vec4 sum = textureLod(uHistory, p12, 0.0) * (w12.x * w12.y) + textureLod(uHistory, vec2(p12.x, p0.y), 0.0) * (w12.x * w0.y) +
-             textureLod(uHistory, vec2(p12.x, p3.y), 0.0) * (w12.x * w3.y) + textureLod(uHistory, vec2(p0.x, p12.y), 0.0) * (w0.x * w12.y) +
-             textureLod(uHistory, vec2(p3.x, p12.y), 0.0) * (w3.x * w12.y);
-  return sum / (w12.x * w12.y + w12.x * (w0.y + w3.y) + w12.y * (w0.x + w3.x));
+  vec4 sum = vec4(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < fetches; ++i) {
+    vec2 x = i == 1 ? vec2(p0.x, w0.x) : (i == 2 ? vec2(p3.x, w3.x) : vec2(p12.x, w12.x));
+    vec2 y = i == 3 ? vec2(p0.y, w0.y) : (i == 4 ? vec2(p3.y, w3.y) : vec2(p12.y, w12.y));
+    sum += x.y * y.y * textureLod(uHistory, vec2(x.x, y.x), 0.0);
+    weights += x.y * y.y;
+  }
+  return sum / max(weights, 1e-6);
 }
 
 void main() {
@@ -89,7 +93,9 @@ void main() {
       vec2 uv = was.w > 0.0 ? was.xy / was.w * 0.5 + 0.5 : vec2(-1.0);
       if (all(greaterThanEqual(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)))) {
         count = texelFetch(uCount, ivec2(uv * size), 0).x;
-        if (count > 0.5) history = clamp(sharpHistory(uv), mean - spread, mean + spread);
+        // Where all around is the same, in clear sky, so is what it was.
+        int fetches = dot(spread, vec4(1.0)) > 0.0 ? 5 : 0;
+        if (count > 0.5) history = clamp(sharpHistory(uv, fetches), mean - spread, mean + spread);
         count = min(count, uMostCount);
       }
     }

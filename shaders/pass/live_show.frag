@@ -9,7 +9,6 @@ uniform float uScale;             // written value for each cd/m2
 
 layout(location = 0) out vec4 outColor;
 
-const int kRadius = 2;
 
 float luminanceOf(vec4 c) { return dot(vec3(c), vec3(0.2126, 0.7152, 0.0722)); }
 
@@ -18,10 +17,11 @@ void main() {
   ivec2 last = textureSize(uHistory, 0) - 1;
   vec4 own = texelFetch(uHistory, px, 0);
   float ownLuminance = luminanceOf(own);
+  int radius = own.w < 1.0 ? 2 : 0;  // clear sky stays so
   vec4 sum = vec4(0.0);
   float weights = 0.0;
-  for (int y = -kRadius; y <= kRadius; ++y)
-    for (int x = -kRadius; x <= kRadius; ++x) {
+  for (int y = -radius; y <= radius; ++y)
+    for (int x = -radius; x <= radius; ++x) {
       vec4 other = texelFetch(uHistory, clamp(px + ivec2(x, y), ivec2(0), last), 0);
       float luminance = luminanceOf(other);
       float d = (abs(luminance - ownLuminance) / max(luminance + ownLuminance, 1e-12) + abs(other.w - own.w)) * uReach;

@@ -45,7 +45,6 @@ glm::vec2 jitterStep(int round) {
 }
 
 constexpr gpu::TextureOptions kColour{.format = gpu::Format::kRgba32F},
-    kShares{.format = gpu::Format::kRg16F},
     kNumber{.format = gpu::Format::kR32F, .filter = gpu::Filter::kNearest};
 
 bool sameView(const shading::ViewParts& a, const shading::ViewParts& b) {
@@ -128,13 +127,13 @@ LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t b
   m.mean = gpu::Texture2D(w, h, kColour);
   m.spread = gpu::Texture2D(w, h, kColour);
   m.nearest = gpu::Texture2D(w, h, kNumber);
-  m.litAir = gpu::Texture2D(w, h, kShares);
+  m.airShadows = gpu::Texture2D(w, h, kColour);
   m.march.attach(0, m.fresh);
   m.march.attach(1, m.freshDepth);
   m.span.attach(0, m.mean);
   m.span.attach(1, m.spread);
   m.span.attach(2, m.nearest);
-  m.air.attach(0, m.litAir);
+  m.air.attach(0, m.airShadows);
   for (std::size_t i = 0; i < 2; ++i) {
     m.history[i] = gpu::Texture2D(width, height, kColour);
     m.count[i] = gpu::Texture2D(width, height, kNumber);
@@ -184,8 +183,8 @@ void LiveVolumes::keepLight(const scene::SkyState& state, const CloudTextures& c
     sweeping_ = wanted;
   }
   constexpr int kParts = LightVolumePass::kParts;
-  if (!lightVolume_.advance(atOnce ? kParts : kParts / kFramesOfSweep, clouds) && lightVolume_.inProgress())
-    return;
+  const int frames = kFramesOfSweep * layout_.columns / shading::LightVolumeLayout::kFewColumns;
+  if (!lightVolume_.advance(atOnce ? kParts : kParts / frames, clouds) && lightVolume_.inProgress()) return;
   light_ = sweeping_;
   sweeping_.reset();
   ++lightNumber_;
@@ -333,8 +332,8 @@ void LiveVolumes::shadeAir(std::size_t view, const scene::SkyState& state, const
 void LiveVolumes::setShadows(gpu::Program& p, std::size_t view, const scene::SkyState& state,
                              const shading::ViewParts& parts) const {
   setLight(p, state, parts);
-  p.set("uLitAirPx", static_cast<float>(kBlock));
-  p.bind("uLitAir", memories_[view]->litAir);
+  p.set("uAirShadowsPx", static_cast<float>(kBlock));
+  p.bind("uAirShadows", memories_[view]->airShadows);
 }
 
 void LiveVolumes::show(std::size_t view, const gpu::Target& target, float scale) {

@@ -33,7 +33,9 @@ class LiveVolumes {
   static constexpr int kBlock = 4;
   static constexpr int kFramesInRound = kBlock * kBlock;
   static constexpr int kRounds = 32;
-  static constexpr int kFramesOfSweep = 16;  // that a new light volume is spread over
+  // That a new light volume is spread over, of few columns (shading::LightVolumeLayout); twice as many, twice
+  // as long.
+  static constexpr int kFramesOfSweep = 16;
 
   LiveVolumes();
 
@@ -85,7 +87,7 @@ class LiveVolumes {
   struct Memory {
     gpu::Texture2D fresh, freshDepth;
     gpu::Texture2D mean, spread, nearest;  // of fresh ones, about each block
-    gpu::Texture2D litAir;
+    gpu::Texture2D airShadows;
     std::array<gpu::Texture2D, 2> history, count;
     gpu::Framebuffer march, span, air;
     std::array<gpu::Framebuffer, 2> resolved;
