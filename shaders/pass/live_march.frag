@@ -21,6 +21,7 @@
 #endif
 #include "lib/dither.glsl"
 #include "lib/march.glsl"
+#define WELKIN_AIR_SAMPLES 8
 #include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) { return 1.0; }  // of no ground

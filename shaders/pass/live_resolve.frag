@@ -3,7 +3,7 @@
 //
 // While neither eye nor time moves, pixels are means of their samples, whose weights grow from round to round (uStillWeight), so that what
 // was there before they stood still is soon forgotten. In motion each pixel looks where its cloud was in the last frame, as eye and wind have
-// moved, and what it finds is held within what the new samples around it span (variance clipping: M. Salvi 2016, "An Excursion in
+// moved, and what it finds is brought within what the new samples around it span (variance clipping: M. Salvi 2016, "An Excursion in
 // Temporal Supersampling"), so that nothing stays where it no longer belongs.
 
 #include "lib/cloud_layer.glsl"
@@ -35,27 +35,35 @@ WELKIN_FIXED uniform vec4 uBandMoveM[kMaxBands];  // xy: with the wind since the
 layout(location = 0) out vec4 outHistory;
 layout(location = 1) out vec4 outCount;
 
-// Catmull and Rom's cubic in five fetches, without its corners (J. Jimenez 2016, "Filmic SMAA"): bilinear filtering frame after frame would
-// blur. With none it is 0: a loop, as a rasteriser on the processor runs both sides of a branch.
-vec4 sharpHistory(vec2 uv, int fetches) {
+// Catmull and Rom's cubic without its corners (J. Jimenez 2016, "Filmic SMAA"), as bilinear filtering frame after frame would blur. Between
+// the four texels around, or edges would ring more and more.
+vec4 sharpHistory(vec2 uv) {
   vec2 size = vec2(textureSize(uHistory, 0));
   vec2 at = uv * size - 0.5;
   vec2 f = fract(at);
-  vec2 centre = (floor(at) + 0.5) / size;
+  ivec2 low = ivec2(floor(at)), high = min(low + 1, ivec2(size) - 1);
+  low = max(low, ivec2(0));
+  vec4 a = texelFetch(uHistory, low, 0), b = texelFetch(uHistory, ivec2(high.x, low.y), 0), c = texelFetch(uHistory, ivec2(low.x, high.y), 0),
+       d = texelFetch(uHistory, high, 0);
   vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
   vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
   vec2 w3 = f * f * (-0.5 + 0.5 * f);
-  vec2 w12 = 1.0 - w0 - w3;
-  vec2 p0 = centre - 1.0 / size, p3 = centre + 2.0 / size, p12 = centre + w2 / w12 / size;
-  vec4 sum = vec4(0.0);
-  float weights = 0.0;
-  for (int i = 0; i < fetches; ++i) {
-    vec2 x = i == 1 ? vec2(p0.x, w0.x) : (i == 2 ? vec2(p3.x, w3.x) : vec2(p12.x, w12.x));
-    vec2 y = i == 3 ? vec2(p0.y, w0.y) : (i == 4 ? vec2(p3.y, w3.y) : vec2(p12.y, w12.y));
-    sum += x.y * y.y * textureLod(uHistory, vec2(x.x, y.x), 0.0);
-    weights += x.y * y.y;
-  }
-  return sum / max(weights, 1e-6);
+  vec2 w12 = 1.0 - w0 - w3, between = w2 / w12;
+  vec2 centre = (floor(at) + 0.5) / size;
+  vec2 p0 = centre - 1.0 / size, p3 = centre + 2.0 / size, p12 = centre + between / size;
+  vec4 sum = mix(mix(a, b, between.x), mix(c, d, between.x), between.y) * (w12.x * w12.y) +
+             w12.x * (textureLod(uHistory, vec2(p12.x, p0.y), 0.0) * w0.y + textureLod(uHistory, vec2(p12.x, p3.y), 0.0) * w3.y) +
+             w12.y * (textureLod(uHistory, vec2(p0.x, p12.y), 0.0) * w0.x + textureLod(uHistory, vec2(p3.x, p12.y), 0.0) * w3.x);
+  sum /= w12.x * w12.y + w12.x * (w0.y + w3.y) + w12.y * (w0.x + w3.x);
+  return clamp(sum, min(min(a, b), min(c, d)), max(max(a, b), max(c, d)));
+}
+
+// Towards the mean until it is within the spread, light and transmittance together: each for itself, gaps between clouds that close would
+// turn into black cloud.
+vec4 clipped(vec4 history, vec4 mean, vec4 spread) {
+  vec4 offset = history - mean;
+  vec4 share = abs(offset) / (spread + vec4(1e-3 * vec3(mean), 1e-3) + 1e-12);
+  return mean + offset / max(max(max(share.x, share.y), max(share.z, share.w)), 1.0);
 }
 
 void main() {
@@ -93,9 +101,10 @@ void main() {
       vec2 uv = was.w > 0.0 ? was.xy / was.w * 0.5 + 0.5 : vec2(-1.0);
       if (all(greaterThanEqual(uv, vec2(0.0))) && all(lessThan(uv, vec2(1.0)))) {
         count = texelFetch(uCount, ivec2(uv * size), 0).x;
-        // Where all around is the same, in clear sky, so is what it was.
-        int fetches = dot(spread, vec4(1.0)) > 0.0 ? 5 : 0;
-        if (count > 0.5) history = clamp(sharpHistory(uv, fetches), mean - spread, mean + spread);
+        // Where all around is the same, as clear sky is, so is what was there: a loop, as a rasteriser on the processor runs both sides of
+        // a branch.
+        int different = count > 0.5 && dot(spread, vec4(1.0)) > 0.0 ? 1 : 0;
+        for (int i = 0; i < different; ++i) history = clipped(sharpHistory(uv), mean, spread);
         count = min(count, uMostCount);
       }
     }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -156,6 +157,31 @@ TEST_F(LiveVolumesTest, RunningTimeIsFollowed) {
                past = relativeDifference(frame, still(s, 30.0));
   EXPECT_LT(now, 0.08);
   EXPECT_LT(now, 0.7 * past);
+}
+
+// Where clouds close a gap nothing is darker than all around it in the still: light and transmittance change
+// together.
+TEST_F(LiveVolumesTest, WhereGapsCloseNothingIsBlack) {
+  scene::Scene s =
+      looking(sized(fromHeight(cloudyScene(30.0, {Genus::kCumulus}), 4000.0), kWidth, kHeight), 200.0, -20.0);
+  s.layers[0].windSpeedMps = 20.0;
+  const Image<float> expected = still(s, 5.0);
+  LiveSky sky;
+  int dark = 0;
+  for (int i = 0; i <= 50; ++i) {
+    sky.update(s, 0.1 * i);
+    after(sky, viewOf(s), 1);
+    if (i < 30) continue;
+    const Image<float> frame = target.readPicture(0, 3);
+    for (int y = 2; y < kHeight - 2; ++y)
+      for (int x = 2; x < kWidth - 2; ++x) {
+        float around = 1e9f;
+        for (int v = y - 2; v <= y + 2; ++v)
+          for (int u = x - 2; u <= x + 2; ++u) around = std::min(around, expected.at(u, v));
+        dark += frame.at(x, y) < 0.6f * around;
+      }
+  }
+  EXPECT_EQ(dark, 0);
 }
 
 // Each view has a memory of its own.
