@@ -53,6 +53,11 @@ struct Workload {
 
 std::vector<Workload> workloads() {
   const auto cells = [](double n) { return glm::dvec3(n); };
+  const auto value = [](NoiseParams p, bool smooth) {
+    p.kind = Kind::kValue;
+    p.smooth = smooth;
+    return p;
+  };
   return {
       {"W1", {.frequency = cells(6), .octaves = 6}, 128, true},
       {"W2", {.dimensions = 2, .frequency = cells(3), .octaves = 10}, 1024, true},
@@ -60,6 +65,10 @@ std::vector<Workload> workloads() {
       {"W4", {.tile = false, .frequency = cells(0.05), .octaves = 5}, 256, false},
       {"W5", {.kind = Kind::kCellular, .frequency = cells(8), .octaves = 1}, 128, false},
       {"W6", {.kind = Kind::kPerlinWorley, .frequency = cells(4), .octaves = 3}, 128, true},
+      {"V1", value({.dimensions = 2, .frequency = cells(3), .octaves = 10}, false), 1024, false},
+      {"V2", value({.dimensions = 2, .frequency = cells(3), .octaves = 10}, true), 1024, false},
+      {"V3", value({.frequency = cells(6), .octaves = 6}, false), 128, false},
+      {"V4", value({.frequency = cells(6), .octaves = 6}, true), 128, false},
   };
 }
 

@@ -6,6 +6,10 @@
 //   W4  Perlin fBm, 5 octaves from 0.05 cells a sample, 256^3, float
 //   W5  cellular F1, 8 cells across 128^3, float
 //   W6  Perlin-Worley, cells from frequency 4 and gradient noise of 3 octaves from 8, 128^3, 8-bit RGBA
+//   V1  bare value noise with the octaves of W2, 1024^2, float
+//   V2  the same smoothed over 27 lattice points
+//   V3  bare value noise with the octaves of W1, 128^3, float
+//   V4  the same smoothed
 // into a buffer that has been written before; and what writing memory costs.
 #pragma once
 

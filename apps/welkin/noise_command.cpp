@@ -69,6 +69,8 @@ Request requestOf(const NoiseArgs& args) {
     if (texts.contains(rate)) cloud.density = cloud.exponent = cloud.sharpness = cloud.scale = {};
   applyTexts(r.params, texts, flags);
   r.params.noise.dimensions = r.volume ? 3 : 2;
+  if (!r.params.noise.time && (texts.contains("time_period") || texts.contains("time_lacunarity")))
+    throw UsageError("noise: --time-period and --time-lacunarity go with --time");
   return r;
 }
 

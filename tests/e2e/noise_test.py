@@ -195,6 +195,9 @@ class BadNoise(ProgramTest):
         self.refuse("is written already", *size, "--report", "./x.raw", out="x.raw.json")
         self.refuse("is written already", *size, "--report", "./p.png", "--preview", "p.png")
         self.fail_with(2, "expected -o OUT", "noise", *size)
+        for flag in ("--time-period", "--time-lacunarity"):
+            self.refuse("go with --time", *size, flag, "4")
+        self.succeed("noise", *size, "--time", "0.5", "--time-period", "4", "-o", "t.png")
         for out in ("none/x.png", "/proc/x.png"):
             self.fail_with(1, "cannot write " + out, "noise", *size, "-o", out)
         self.fail_with(1, "cannot write none/", "noise", *size, "-o", "x.png", "--report", "none/r.json")
@@ -210,6 +213,24 @@ class BadNoise(ProgramTest):
         self.fail_with(1, "which r16f cannot hold; expected --format r32f", *dense, "r16f")
         self.fail_with(1, "which l8 cannot hold; expected --format r32f", *dense, "l8")
         self.succeed(*dense, "r32f")
+
+    def test_seeds_are_taken_to_the_last_digit(self):
+        most = 2**53 - 1
+        for flag in ("--seed", "--tower-seed"):
+            for seed in (most + 1, most + 2, 2**60 + 1):
+                message = self.fail_with(2, f"seed is {seed}; expected 0 to {most}", "cloud", "--cumulus", flag, str(seed), "-o", "c.dds")
+                self.assertIn(flag, message)
+        cloud = ("cloud", "--size", "12x12x12", "--report", "r.json", "-o", "c.vdb", "--seed")
+        for seed in (most, most - 2):
+            self.succeed(*cloud, str(seed))
+            self.assertEqual(json.loads((self.folder / "r.json").read_text())["cloud"]["noise"]["seed"], seed)
+        # Noise takes every whole number of 64 bits.
+        for seed in (2**53 + 1, 2**63 - 1, -2**63):
+            self.succeed("noise", "--size", "8x8", "--seed", str(seed), "-o", "x.png", "--report", "r.json")
+            self.assertEqual(json.loads((self.folder / "r.json").read_text())["noise"]["seed"], seed)
+        self.fail_with(2, "seed: expected a smaller number", "noise", "--size", "8x8", "--seed", str(2**63), "-o", "x.png")
+        self.write("s.toml", f"seed = {most + 2}\n")
+        self.fail_with(1, f"seed is {most + 2}; expected 0 to {most}", "info", "s.toml")
 
     def test_a_limit_of_file_sizes(self):
         for out in ("x.dds", "x.png", "x.raw"):

@@ -147,7 +147,7 @@ void describe(MapNoise& n, ParamVisitor& v) {
   v.choice({"interpolation", "", "between the lattice points of value noise"}, n.interpolation);
   v.value({"smooth", "", "average value noise over the 27 lattice points around each"}, n.smooth);
   v.choice({"fold", "", "how the noise is made positive: its absolute value, or shifted to 0..1"}, n.fold);
-  v.value({"seed", "", "another noise of the same kind", 0, 9007199254740992.0}, n.seed);
+  v.value({"seed", "", "another noise of the same kind", 0, 9007199254740991.0}, n.seed);
 }
 
 void describe(CloudMapParams& p, ParamVisitor& v) {

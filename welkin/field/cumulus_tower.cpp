@@ -83,7 +83,7 @@ void fit(std::vector<Ellipsoid>& bubbles, const CumulusParams& p) {
 }  // namespace
 
 void describe(CumulusParams& p, ParamVisitor& v) {
-  v.value({"tower_seed", "", "another tower of the same kind", 0, 9007199254740992.0}, p.seed);
+  v.value({"tower_seed", "", "another tower of the same kind", 0, 9007199254740991.0}, p.seed);
   v.value({"width_m", "m", "width of the tower", 1, 100000}, p.widthM);
   v.value({"height_m", "m", "height of the tower above its base", 1, 30000}, p.heightM);
   v.value({"bubbles", "", "bubbles that rise from the base", 1, 64}, p.bubbles);

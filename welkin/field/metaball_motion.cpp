@@ -27,7 +27,7 @@ void describe(MetaballMotion& m, ParamVisitor& v) {
   v.value({"reference_m", "m", "height at which the wind is the cloud's", -1e6, 1e6}, m.referenceM);
   v.value({"life_s", "s", "life of a ball; 0: they stay", 0, 1e9}, m.lifeS);
   v.value({"fade", "", "share of a life in which a ball grows, and in which it decays", 0, 0.5}, m.fade);
-  v.value({"seed", "", "other moments of birth", 0, 9007199254740992.0}, m.seed);
+  v.value({"seed", "", "other moments of birth", 0, 9007199254740991.0}, m.seed);
 }
 
 std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMotion& motion, double timeS) {

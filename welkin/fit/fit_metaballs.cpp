@@ -274,7 +274,7 @@ void validate(const DensityGrid& data, const FitParams& params, const std::vecto
 void describe(FitParams& p, ParamVisitor& v) {
   v.choice({"method", "", "how balls are found"}, p.method);
   v.value({"signed", "", "let densities of balls be negative"}, p.isSigned);
-  v.value({"seed", "", "other clusters to begin with", 0, 9007199254740992.0}, p.seed);
+  v.value({"seed", "", "other clusters to begin with", 0, 9007199254740991.0}, p.seed);
   v.value({"spread", "",
            "radius of the first balls, of the RMS radius of their clusters; absent: what is best", 0.1, 20},
           p.spread);

@@ -12,6 +12,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "welkin/noise/value_rows-inl.h"
 #if HWY_TARGET != HWY_SCALAR
 #include "welkin/noise/cell_tiles-inl.h"
 #include "welkin/noise/distort_rows-inl.h"
@@ -24,9 +25,13 @@ namespace welkin::noise::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-// A processor without vectors gets the point function.
-void fillBlock(const FillJob& job, const Block& b, Scratch&) {
-  fillPointwise(job, b);
+// A processor without vectors gets the point function, but for value noise, whose bits no vectors change.
+void fillBlock(const FillJob& job, const Block& b, Scratch& scratch) {
+  scratch.reset();
+  if (job.params->kind == Kind::kValue)
+    fillValueBlock(job, b, scratch);
+  else
+    fillPointwise(job, b);
 }
 
 void makeCorners(const double* inside, int n, bool derivative, const CornerArrays& out) {
@@ -233,12 +238,17 @@ void fillBlock(const FillJob& job, const Block& b, Scratch& scratch) {
       fillCells(job, b, scratch);
       break;
     case Kind::kValue:
+      fillValueBlock(job, b, scratch);
       break;
   }
   if (job.stream) hwy::FlushStream();
 }
 
 #endif  // vectors
+
+void addValues(const ValueTables& octave, const glm::ivec3& size, float* out, Scratch& scratch) {
+  addValuesTo(octave, size, out, scratch);
+}
 
 }  // namespace welkin::noise::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -250,6 +260,7 @@ namespace welkin::noise {
 HWY_EXPORT(fillBlock);
 HWY_EXPORT(makeCorners);
 HWY_EXPORT(makeHashes);
+HWY_EXPORT(addValues);
 
 void fillBlock(const FillJob& job, const Block& block, Scratch& scratch) {
   HWY_DYNAMIC_DISPATCH(fillBlock)(job, block, scratch);
@@ -261,6 +272,10 @@ void makeCorners(const double* inside, int n, bool derivative, const CornerArray
 
 void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint32_t* out) {
   HWY_DYNAMIC_DISPATCH(makeHashes)(key, index, n, out);
+}
+
+void addValues(const ValueTables& octave, const glm::ivec3& size, float* out, Scratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(addValues)(octave, size, out, scratch);
 }
 
 }  // namespace welkin::noise

@@ -17,6 +17,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
+#include <span>
 #include <vector>
 
 #include "welkin/noise/noise.h"
@@ -197,6 +199,25 @@ struct DistortTables {
   Spot time;
 };
 
+// Where samples along an axis fall among the lattice points of an octave of value noise, which are listed in
+// the samples' order, those that smoothing takes beside them too. Padded: samples to a multiple of kPad,
+// points by kPad.
+struct ValueLine {
+  const std::int32_t* first;  // by sample: its first tap's point
+  const float* weight[4];     // by tap, for each sample
+  int points;
+  const std::uint32_t* index;   // of each point
+  const std::uint64_t* column;  // ownColumn() of them
+};
+
+// One octave of value noise over the box.
+struct ValueTables {
+  ValueSettings settings;
+  int taps;
+  float weight;  // 1 where the fractal bends the octave
+  ValueLine axis[3];
+};
+
 enum class Format { kUint8, kUint16, kHalf, kFloat };
 
 // Samples of the box that are worked on together, by one thread.
@@ -220,6 +241,8 @@ struct FillJob {
   int cellTerms;
   DistortTables* distorts;
   int distortTerms;
+  ValueTables* values;
+  int valueTerms;
   int lead[3], tiled[3];  // samples from a tile's first to the box's, and of whole tiles over the box
   float bias;             // of sums that are not gradients'
   float low, high;        // clamp of normalised values
@@ -236,6 +259,13 @@ struct FillJob {
   // The whole tiles of a block, from the first tile's first sample.
   Block tilesOf(const Block& b) const;
 };
+
+// Where samples of an axis lie on an octave of value noise; `taken` guards the memory, where threads share
+// it.
+ValueLine makeValueLine(const ValueSettings& settings, int axis, std::span<const CellPlace> places,
+                        Scratch& memory, std::mutex& taking);
+// The tables of job.values.
+void makeValueTables(FillJob& job, Scratch& memory);
 
 // Fills job.out. Everything in the job has been checked.
 void fillGrid(FillJob& job);
@@ -257,5 +287,8 @@ void makeHashes(std::uint32_t key, const std::uint32_t* index, int n, std::uint3
 
 // One block of it, on the processor's best instruction set.
 void fillBlock(const FillJob& job, const Block& block, Scratch& scratch);
+
+// Adds one octave of value noise to a box, on the same; `size` samples from the lines' first.
+void addValues(const ValueTables& octave, const glm::ivec3& size, float* out, Scratch& scratch);
 
 }  // namespace welkin::noise

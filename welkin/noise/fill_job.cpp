@@ -459,8 +459,10 @@ void makeTables(FillJob& job, Scratch& memory) {
       for (int o = 0; o < octaves; ++o) tables.addDistort(plan.distorted[o], job.distorts[o], scale);
       break;
     }
-    case Kind::kCellular:
     case Kind::kValue:
+      makeValueTables(job, memory);
+      break;
+    case Kind::kCellular:
       break;
   }
   job.bias = static_cast<float>(p.kind == Kind::kPerlinWorley ? 0.0 : bias);
@@ -505,6 +507,15 @@ double cellsOfSample(const FillJob& job) {
 // function, which looks at some samples' own alone, is as fast and takes no memory.
 constexpr double kCrowded = 8.0, kPointwise = 512.0;
 
+// Rows of a block of value noise: fewer where so many lattice points lie under each that they take much
+// memory.
+int valueRows(const FillJob& job) {
+  double most = 0.0;
+  for (const ValueTerm& term : job.plan->values)
+    for (int a = 0; a < 2; ++a) most = std::max(most, term.axes[a].frequency() * job.grid.spacing[a]);
+  return most > 2.0 ? kSmallChunk : 4 * kSmallChunk;
+}
+
 }  // namespace
 
 void fillGrid(FillJob& job) {
@@ -538,6 +549,12 @@ void fillGrid(FillJob& job) {
     rows = p.dimensions == 3 ? 16 : 64;
     slices = p.kind == Kind::kCellular ? 16 : 8;
     if (crowd > kCrowded) rows = slices = kTileMost;
+  } else if (p.kind == Kind::kValue) {
+    rows = valueRows(job);
+    // Slices share planes of the lattice: all of them where that leaves threads enough to do.
+    const int across = (size.x + strip - 1) / strip, down = (size.y + rows - 1) / rows;
+    const int parts = std::max(4 * threadCount() / (across * down), 1);
+    slices = std::max((size.z + parts - 1) / parts, std::min(size.z, 8));
   } else if (size.z < 4 * slices * threadCount()) {
     rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
   }

@@ -48,7 +48,8 @@ Span Axis::at(double p, double shiftCells) const {
 
 std::uint32_t Axis::moved(std::uint32_t index, int steps) const {
   if (period_ == 0) return index + static_cast<std::uint32_t>(steps);
-  const std::int64_t i = (static_cast<std::int64_t>(index) + steps) % period_;
+  std::int64_t i = static_cast<std::int64_t>(index) + steps;
+  if (i < 0 || i >= period_) i %= period_;  // divisions are slow
   return static_cast<std::uint32_t>(i < 0 ? i + period_ : i);
 }
 

@@ -132,6 +132,7 @@ Half halfOf(float v) {
   const float magnitude = std::abs(v);
   const std::uint16_t sign = std::signbit(v) ? 0x8000 : 0;
   if (!(magnitude < 65520.0f)) return {static_cast<std::uint16_t>(sign | (std::isnan(v) ? 0x7e00 : 0x7c00))};
+  if (magnitude == 0.0f) return {sign};
   int exponent = 0;
   std::frexp(magnitude, &exponent);
   const int ulp = std::max(exponent - 11, -24);
@@ -208,13 +209,6 @@ void Noise::fill(const Grid& grid, const Box& box, std::span<T> out) const {
     throw ParameterError("a buffer of " + std::to_string(out.size()) + " values is not what " +
                          text(box.size) + " samples of " + std::to_string(channels()) + " need");
 
-  if (params_.kind == Kind::kValue) {
-    fillValues(impl_->plan, params_, grid, box, [&](std::size_t at, std::span<const float> row) {
-      for (std::size_t i = 0; i < row.size(); ++i)
-        out[at + i] = storedAs<T>(impl_->plan, apply(impl_->plan.normalise, row[i]));
-    });
-    return;
-  }
   FillJob job{};
   job.noise = this;
   job.plan = &impl_->plan;

@@ -101,6 +101,8 @@ void validate(const NoiseParams& p) {
   const double last = std::pow(p.lacunarity, static_cast<double>(p.octaves - 1));
   for (int axis = 0; axis < p.dimensions; ++axis)
     require(p.frequency[axis] * last <= 1e9, "the noise's last octave has more than 1e9 cells a unit");
+  require(p.timePeriod == 0.0 || p.time,
+          "the noise has a time_period and no time: without a time it does not evolve");
   if (p.timePeriod > 0.0) {
     require(isWhole(p.timePeriod), "the noise's time_period is not a whole number of cells");
     require(isWhole(p.timeLacunarity) && p.timeLacunarity >= 1.0,

@@ -56,6 +56,7 @@ struct ValueAndSlope {
 class Value {
  public:
   explicit Value(const ValueSettings& settings = {});
+  const ValueSettings& settings() const { return settings_; }
 
   // The bare hash g of a lattice point, in [-1, 1].
   float hash(std::int64_t x, std::int64_t y, std::int64_t z) const;
@@ -73,7 +74,7 @@ class Value {
 
   // out += weight * noise for a box (x fastest, then y, then z; out.size() is the product of box.count), in
   // floats that agree with the point function within 1e-6 * weight. Each lattice point is hashed once.
-  // Memory beside `out`: a few planes of the lattice under the box, which the thread keeps.
+  // Memory beside `out`: a few planes of the lattice under strips of the box, kept for the next.
   void add(std::span<float> out, float weight, const SampleBox& box) const;
   // The same at the places given for each axis, best in rising order.
   void add(std::span<float> out, float weight, std::span<const CellPlace> x, std::span<const CellPlace> y,
@@ -85,10 +86,6 @@ class Value {
   double bound(int dimensions) const;
 
  private:
-  struct Axis;
-  class Planes;
-  struct Room;
-  std::uint32_t wrapped(std::int64_t i, int axis) const;
   ValueSettings settings_;
 };
 

@@ -20,7 +20,8 @@ std::string withUnit(std::string text, const ParamInfo& info) {
                        std::string(found) + "\"");
 }
 
-void requireInRange(const ParamInfo& info, double x) {
+template <class Number>
+void requireInRange(const ParamInfo& info, Number x) {
   if (const std::string problem = rangeProblem(info, x); !problem.empty()) throw ParameterError(problem);
 }
 
@@ -53,11 +54,29 @@ std::string rangeText(const ParamInfo& info) {
   return {};
 }
 
+namespace {
+
+std::string notInRange(const ParamInfo& info, const std::string& number) {
+  const std::string range = rangeText(info);
+  return std::string(info.key) + " is " + number + "; expected " +
+         (range.empty() ? "a finite number" : range);
+}
+
+}  // namespace
+
 std::string rangeProblem(const ParamInfo& info, double x) {
   if (x >= info.min && x <= info.max && std::isfinite(x)) return {};
-  const std::string range = rangeText(info);
-  return std::string(info.key) + " is " + numberText(x) + "; expected " +
-         (range.empty() ? "a finite number" : range);
+  return notInRange(info, numberText(x));
+}
+
+std::string rangeProblem(const ParamInfo& info, std::int64_t n) {
+  // 2^63 is the first double that no number here reaches; below it doubles have whole numbers' own values.
+  constexpr double kBeyond = 0x1p63;
+  const bool low =
+      info.min >= kBeyond || (info.min > -kBeyond && n < static_cast<std::int64_t>(std::ceil(info.min)));
+  const bool high =
+      info.max < -kBeyond || (info.max < kBeyond && n > static_cast<std::int64_t>(std::floor(info.max)));
+  return low || high ? notInRange(info, std::to_string(n)) : std::string();
 }
 
 std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,
@@ -97,7 +116,7 @@ void TextSetter::value(const ParamInfo& info, std::int64_t& x) {
   if (!read || error == std::errc::invalid_argument) fail(info, "a whole number", text_);
   if (error == std::errc::result_out_of_range)
     fail(info, rangeText(info).empty() ? "a smaller number" : rangeText(info), text_);
-  requireInRange(info, static_cast<double>(n));
+  requireInRange(info, n);
   x = n;
 }
 

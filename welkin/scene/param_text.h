@@ -22,6 +22,8 @@ std::string rangeText(const ParamInfo& info);
 // Empty, or what is wrong with the number: "latitude_deg is 95; expected -90 to 90 deg". NaN and infinities
 // are never allowed.
 std::string rangeProblem(const ParamInfo& info, double x);
+// The same of a whole number, to the last digit.
+std::string rangeProblem(const ParamInfo& info, std::int64_t n);
 
 // What is wrong with a name that is none of the choices, with the nearest one when there is one.
 std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,

@@ -56,7 +56,7 @@ class TomlReader final : public ParamVisitor {
     const toml::node* n = find(info);
     if (n == nullptr) return;
     const std::int64_t i = typed<std::int64_t>(*n, info, "a whole number");
-    requireInRange(*n, info, static_cast<double>(i));
+    requireInRange(*n, info, i);
     x = i;
   }
   void value(const ParamInfo& info, double& x) override {
@@ -184,7 +184,8 @@ class TomlReader final : public ParamVisitor {
     requireInRange(node, info, x);
     return x;
   }
-  void requireInRange(const toml::node& node, const ParamInfo& info, double x) const {
+  template <class Number>
+  void requireInRange(const toml::node& node, const ParamInfo& info, Number x) const {
     if (const std::string problem = rangeProblem(info, x); !problem.empty()) fail(node, problem);
   }
 

@@ -238,6 +238,63 @@ TEST(Fill, HasNoWeightsWhoseProductsAreNotNormalFloats) {
   }
 }
 
+// Value noise fuses nothing. Cells wider and narrower than vectors of samples, and than samples.
+TEST(Fill, OfValuesIsTheSameOnEveryInstructionSetAndInEveryPart) {
+  for (const double cells : {0.01, 0.3, 0.85, 0.95, 1.5, 2.5, 30.0})
+    for (const Interpolation interpolation : {Interpolation::kCosine, Interpolation::kCubic})
+      for (const Table table : {Table::kSeeded, Table::kPublished})
+        for (const bool smooth : {false, true}) {
+          NoiseParams p{.kind = Kind::kValue, .tile = false, .frequency = {cells, cells, 0.6}, .octaves = 2};
+          p.interpolation = interpolation;
+          p.smooth = smooth;
+          p.table = table;
+          p.offset = {-3.3, 0.0, 1e9};
+          const Noise noise(p);
+          const Grid grid{{301, 35, 4}, glm::dvec3(1.0)};
+          std::vector<std::vector<float>> results;
+          for (const std::int64_t target : targets(false)) {
+            hwy::SetSupportedTargetsForTest(target);
+            results.push_back(filled<float>(noise, grid));
+          }
+          hwy::SetSupportedTargetsForTest(0);
+          for (const auto& r : results) ASSERT_TRUE(sameBytes(results[0], r)) << cells << " " << smooth;
+          const Box box{{17, 3, 1}, {270, 31, 3}};
+          const auto part = filled<float>(noise, grid, box);
+          for (int z = 0; z < box.size.z; ++z)
+            for (int y = 0; y < box.size.y; ++y)
+              ASSERT_EQ(std::memcmp(&part[static_cast<std::size_t>(z * box.size.y + y) * box.size.x],
+                                    &results[0][static_cast<std::size_t>(
+                                        ((z + 1) * grid.size.y + y + 3) * grid.size.x + 17)],
+                                    sizeof(float) * box.size.x),
+                        0)
+                  << cells << " " << smooth << " row " << y;
+        }
+}
+
+// Clamped to [0, 1], many are 0: halves of nothing were 1/4.
+TEST(Fill, OfValuesHasHalvesOfItsFloats) {
+  for (const Kind kind : {Kind::kValue, Kind::kPerlin}) {
+    NoiseParams p{.kind = kind, .frequency = {9, 7, 5}, .octaves = 2, .amplitude = 8.0};
+    p.normalisation = Normalisation::kThesis;
+    p.persistence = 0.0;
+    p.smooth = false;
+    const Noise noise(p);
+    const Grid grid = Grid::tile({83, 21, 5});
+    const auto floats = filled<float>(noise, grid);
+    const auto halves = filled<Half>(noise, grid);
+    for (std::size_t i = 0; i < floats.size(); ++i) {
+      if (floats[i] == 0.0f) {
+        ASSERT_EQ(halves[i].bits, 0);
+      }
+      if (floats[i] == 1.0f) {
+        ASSERT_EQ(halves[i].bits, 0x3c00);
+      }
+    }
+    const auto zeros = std::count(floats.begin(), floats.end(), 0.0f);
+    EXPECT_EQ(std::count_if(halves.begin(), halves.end(), [](Half h) { return h.bits == 0; }), zeros);
+  }
+}
+
 TEST(Fill, IsTheSameForAnyThreadCount) {
   const int before = threadCount();
   for (const Case& c : cases()) {

@@ -29,6 +29,7 @@ TEST(NoiseParams, RefuseWhatDoesNotFitTogether) {
   refused([](NoiseParams& p) { p.octaves = 25; });
   refused([](NoiseParams& p) { p.dimensions = 4; });
   refused([](NoiseParams& p) { p.time = 1.0, p.timePeriod = 2.5; });
+  refused([](NoiseParams& p) { p.timePeriod = 2.0; });
   refused([](NoiseParams& p) { p.kind = Kind::kCellular, p.fractal = Fractal::kBillow; });
   refused([](NoiseParams& p) { p.kind = Kind::kCurl, p.table = Table::kPublished; });
   refused(
