@@ -24,6 +24,9 @@ std::string rangeText(const ParamInfo& info);
 std::string rangeProblem(const ParamInfo& info, double x);
 // The same of a whole number, to the last digit.
 std::string rangeProblem(const ParamInfo& info, std::int64_t n);
+inline std::string rangeProblem(const ParamInfo& info, int n) {
+  return rangeProblem(info, std::int64_t{n});
+}
 
 // What is wrong with a name that is none of the choices, with the nearest one when there is one.
 std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,
