@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "convert_command.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include "interrupt.h"
@@ -17,6 +20,8 @@ namespace {
 
 using io::Channels;
 using io::TexelFileKind;
+
+constexpr std::size_t kPieceBytes = 1 << 20;  // that are converted at once
 
 std::string whyNot(TexelFileKind kind, const io::TexelShape& shape) {
   const bool volumes =
@@ -74,10 +79,13 @@ int runConvert(const ConvertArgs& args) {
   io::TexelConverter converter(texels.shape, shape.format);
   try {
     progress.begin("writing");
-    for (int z = 0; z < shape.nz; ++z) {
+    const std::size_t row = texels.shape.rowBytes(),
+                      piece = row * std::max<std::size_t>(kPieceBytes / row, 1);
+    const std::span<const std::byte> all(texels.bytes);
+    for (std::size_t at = 0; at < all.size(); at += piece) {
       throwIfInterrupted();
-      progress.show(static_cast<double>(z) / shape.nz);
-      writer->write(converter.convert(texels.slice(z)));
+      progress.show(static_cast<double>(at) / static_cast<double>(all.size()));
+      writer->write(converter.convert(all.subspan(at, std::min(piece, all.size() - at))));
     }
   } catch (const ParameterError& e) {
     throw ParameterError("cannot convert " + args.in + " to " + args.out + ": " + e.what());

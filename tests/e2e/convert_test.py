@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """`welkin convert`, and `welkin info` of what it writes."""
 import json
+import os
 import pathlib
 import struct
+import subprocess
 
-from welkin_program import ProgramTest, main
+from welkin_program import PROGRAM, ProgramTest, main
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / "data" / "io"
 
@@ -53,6 +55,18 @@ class Convert(ProgramTest):
         self.assertEqual(self.bytes_of("e.png"), self.bytes_of("a.png"))
         self.succeed("convert", "a.png", "f.hdr")
         self.assertEqual(self.info("f.hdr")["values"], "rgbe")
+
+    def test_a_picture_takes_the_memory_of_what_is_read_and_what_is_written(self):
+        side = 4096
+        (self.folder / "a.raw").write_bytes(bytes(side * side))
+        self.write("a.raw.json", json.dumps({"version": 1, "size": [side, side], "channels": "l", "type": "uint8",
+                                             "byte_order": "little"}))
+        program = subprocess.Popen([PROGRAM, "convert", "a.raw", "b.png", "--format", "l16"], cwd=self.folder)
+        _, status, usage = os.wait4(program.pid, 0)
+        program.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(program.returncode, 0)
+        both, program_itself = 3 * side * side, 48 << 20
+        self.assertLess(usage.ru_maxrss * 1024, 1.1 * both + program_itself)
 
     def test_same_input_same_bytes(self):
         for name in ("a.dds", "a.raw", "a.vdb"):

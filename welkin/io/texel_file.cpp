@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -27,19 +29,6 @@ bool isInteger(ValueType type) {
   return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;
 }
 
-template <class T>
-Image<T> toImage(const Texels& texels) {
-  Image<T> image(texels.shape.nx, texels.shape.ny, countOf(texels.shape.format.channels));
-  std::memcpy(image.data.data(), texels.bytes.data(), texels.bytes.size());
-  return image;
-}
-
-Image<float> toFloatImage(const Texels& texels) {
-  Image<float> image(texels.shape.nx, texels.shape.ny, countOf(texels.shape.format.channels));
-  toFloats(texels.shape.format.type, texels.bytes, image.data);
-  return image;
-}
-
 void requirePositive(const std::filesystem::path& path, const Image<float>& image, const TexelShape& shape) {
   for (std::size_t i = 0; i < image.data.size(); ++i)
     if (image.data[i] < 0.0f)
@@ -47,41 +36,60 @@ void requirePositive(const std::filesystem::path& path, const Image<float>& imag
                            " is negative, which an HDR picture cannot hold");
 }
 
-// Pictures whose formats are written in one piece.
+// Pictures whose formats are written in one piece, kept as those want them.
 class PictureWriter : public TexelWriter {
  public:
   PictureWriter(std::filesystem::path path, TexelFileKind kind, const TexelShape& shape,
                 const TexelNotes& notes)
-      : path_(std::move(path)), kind_(kind) {
-    texels_.shape = shape;
-    texels_.notes = notes;
-    texels_.bytes.reserve(shape.bytes());
+      : path_(std::move(path)), kind_(kind), shape_(shape), metadata_(notes.metadata) {
+    const int channels = countOf(shape.format.channels);
+    if (kind != TexelFileKind::kPng)
+      picture_ = Image<float>(shape.nx, shape.ny, channels);
+    else if (shape.format.type == ValueType::kUnorm8)
+      picture_ = Image<std::uint8_t>(shape.nx, shape.ny, channels);
+    else
+      picture_ = Image<std::uint16_t>(shape.nx, shape.ny, channels);
   }
   void write(std::span<const std::byte> rows) override {
-    texels_.bytes.insert(texels_.bytes.end(), rows.begin(), rows.end());
+    const ValueType type = shape_.format.type;
+    const std::size_t count = rows.size() / bytesOf(type);
+    std::visit(
+        [&]<class T>(Image<T>& picture) {
+          const auto to = std::span(picture.data).subspan(written_, count);
+          if constexpr (std::is_same_v<T, float>)
+            toFloats(type, rows, to);
+          else
+            std::ranges::copy(rows, std::as_writable_bytes(to).begin());
+        },
+        picture_);
+    written_ += count;
   }
   void close() override {
-    assert(texels_.bytes.size() == texels_.shape.bytes());
-    const ValueType type = texels_.shape.format.type;
-    if (kind_ == TexelFileKind::kHdr) {
-      const Image<float> image = toFloatImage(texels_);
-      requirePositive(path_, image, texels_.shape);
-      writeHdr(path_, image);
-    } else if (kind_ == TexelFileKind::kExr) {
-      writeExr(path_, toFloatImage(texels_),
-               {.depth = type == ValueType::kHalf ? ExrDepth::kHalf : ExrDepth::kFloat,
-                .metadata = texels_.notes.metadata});
-    } else if (type == ValueType::kUnorm8) {
-      writePng(path_, toImage<std::uint8_t>(texels_), texels_.notes.metadata);
-    } else {
-      writePng(path_, toImage<std::uint16_t>(texels_), texels_.notes.metadata);
-    }
+    assert(written_ * bytesOf(shape_.format.type) == shape_.bytes());
+    std::visit([this](const auto& picture) { writePicture(picture); }, picture_);
   }
 
  private:
+  template <class T>
+  void writePicture(const Image<T>& picture) const {
+    writePng(path_, picture, metadata_);
+  }
+  void writePicture(const Image<float>& picture) const {
+    if (kind_ == TexelFileKind::kHdr) {
+      requirePositive(path_, picture, shape_);
+      writeHdr(path_, picture);
+    } else {
+      const bool half = shape_.format.type == ValueType::kHalf;
+      writeExr(path_, picture, {.depth = half ? ExrDepth::kHalf : ExrDepth::kFloat, .metadata = metadata_});
+    }
+  }
+
   std::filesystem::path path_;
   TexelFileKind kind_;
-  Texels texels_;
+  TexelShape shape_;
+  std::map<std::string, std::string> metadata_;
+  std::variant<Image<float>, Image<std::uint8_t>, Image<std::uint16_t>> picture_;
+  std::size_t written_ = 0;  // values
 };
 
 Texels readPngTexels(const std::filesystem::path& path) {
