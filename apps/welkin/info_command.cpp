@@ -61,15 +61,42 @@ void addStatistics(Json& j, const io::Texels& texels) {
   j["max"] = stored(high);
 }
 
-Json texelsJson(const std::string& path) {
-  const TexelFileKind kind = io::texelFileKindOf(path);
-  const io::Texels texels = io::readTexels(path);
-  const io::TexelShape& shape = texels.shape;
+Json shapeJson(TexelFileKind kind, const io::TexelShape& shape) {
   Json j = {{"width", shape.nx}, {"height", shape.ny}};
   if (shape.volume) j["depth"] = shape.nz;
   j["channels"] = io::countOf(shape.format.channels);
   j["values"] = valuesOf(kind, shape.format.type);
   j["format"] = io::nameOf(shape.format);
+  return j;
+}
+
+void addPlace(Json& j, const io::TexelNotes& notes) {
+  j["voxel_size_m"] = {notes.voxelSizeM.x, notes.voxelSizeM.y, notes.voxelSizeM.z};
+  j["first_voxel_m"] = {notes.firstVoxelM.x, notes.firstVoxelM.y, notes.firstVoxelM.z};
+  j["name"] = notes.name;
+}
+
+// As sparse as it is.
+Json vdbJson(const std::string& path) {
+  const io::VdbSummary grid = io::readVdbSummary(path);
+  Json j = shapeJson(TexelFileKind::kVdb, grid.shape);
+  j["active_voxels"] = grid.activeVoxels;
+  j["min"] = grid.min;
+  j["mean"] = grid.mean;
+  j["max"] = grid.max;
+  addPlace(j, grid.notes);
+  for (const io::VdbGrid& g : io::readVdbGrids(path))
+    j["grids"].push_back({{"name", g.name}, {"type", g.type}, {"half", g.half}});
+  if (!grid.notes.leftOut.empty()) j["left_out"] = grid.notes.leftOut;
+  j["metadata"] = grid.notes.metadata;
+  return j;
+}
+
+Json texelsJson(const std::string& path) {
+  const TexelFileKind kind = io::texelFileKindOf(path);
+  if (kind == TexelFileKind::kVdb) return vdbJson(path);
+  const io::Texels texels = io::readTexels(path);
+  Json j = shapeJson(kind, texels.shape);
   if (kind == TexelFileKind::kPng) j["meaning"] = "sRGB";
   if (kind == TexelFileKind::kExr || kind == TexelFileKind::kHdr) j["meaning"] = "linear Rec. 709, cd/m2";
   if (kind == TexelFileKind::kDds) {
@@ -79,15 +106,7 @@ Json texelsJson(const std::string& path) {
     j["levels"] = dds.levels;
   }
   addStatistics(j, texels);
-  if (shape.volume && kind != TexelFileKind::kDds) {
-    const io::TexelNotes& notes = texels.notes;
-    j["voxel_size_m"] = {notes.voxelSizeM.x, notes.voxelSizeM.y, notes.voxelSizeM.z};
-    j["first_voxel_m"] = {notes.firstVoxelM.x, notes.firstVoxelM.y, notes.firstVoxelM.z};
-    j["name"] = notes.name;
-  }
-  if (kind == TexelFileKind::kVdb)
-    for (const io::VdbGrid& grid : io::readVdbGrids(path))
-      j["grids"].push_back({{"name", grid.name}, {"type", grid.type}, {"half", grid.half}});
+  if (texels.shape.volume && kind != TexelFileKind::kDds) addPlace(j, texels.notes);
   if (!texels.notes.leftOut.empty()) j["left_out"] = texels.notes.leftOut;
   if (kind != TexelFileKind::kDds && kind != TexelFileKind::kHdr) j["metadata"] = texels.notes.metadata;
   return j;

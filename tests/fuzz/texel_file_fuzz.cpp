@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -67,6 +68,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (raw && texels != data + size) ++texels;
   put(path, texels, static_cast<std::size_t>(data + size - texels));
   try {
+    if (texelFileKindOf(path) == TexelFileKind::kVdb) {  // first, as it takes more files
+      const VdbSummary summary = readVdbSummary(path);
+      require(summary.min <= summary.max && std::isfinite(summary.mean));
+    }
     check(readTexels(path));
     if (texelFileKindOf(path) == TexelFileKind::kDds)
       for (const Texels& level : readDdsLevels(path)) check(level);

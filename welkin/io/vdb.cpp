@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <streambuf>
 #include <utility>
@@ -150,26 +152,34 @@ CoordBBox boxOf(const InputFile& file, const vdb::GridHead& head, const FloatTre
   return active;
 }
 
+std::string sizeText(const CoordBBox& box) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += (i == 0 ? "" : "x") + std::to_string(std::int64_t{box.max()[i]} - box.min()[i] + 1);
+  return text;
+}
+
 TexelShape shapeOf(const InputFile& file, const CoordBBox& box, bool half) {
+  std::array<int, 3> size;
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t side = std::int64_t{box.max()[i]} - box.min()[i] + 1;
+    if (side > std::numeric_limits<int>::max())
+      file.fail("the grid's box has " + sizeText(box) + " voxels; expected fewer than 2^31 a side");
+    size[static_cast<std::size_t>(i)] = static_cast<int>(side);
+  }
+  return {{Channels::kR, half ? ValueType::kHalf : ValueType::kFloat}, size[0], size[1], size[2], true};
+}
+
+void requireDense(const InputFile& file, const CoordBBox& box, const TexelShape& shape) {
   constexpr std::uint64_t kAlways = 1 << 24, kForEachByte = 512;
   std::uint64_t voxels = 1;
-  std::array<std::int64_t, 3> size;
   bool overflow = false;
-  for (int i = 0; i < 3; ++i) {
-    size[static_cast<std::size_t>(i)] = std::int64_t{box.max()[i]} - box.min()[i] + 1;
-    overflow =
-        overflow || __builtin_mul_overflow(
-                        voxels, static_cast<std::uint64_t>(size[static_cast<std::size_t>(i)]), &voxels);
-  }
+  for (const int side : {shape.nx, shape.ny, shape.nz})
+    overflow = overflow || __builtin_mul_overflow(voxels, static_cast<std::uint64_t>(side), &voxels);
   if (overflow || voxels > kMostVoxels || (voxels > kAlways && voxels / kForEachByte > file.size()))
-    file.fail("the grid's box has " + std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" +
-              std::to_string(size[2]) + " voxels, which is too many for a volume from a file of " +
-              std::to_string(file.size()) + " bytes");
-  return {{Channels::kR, half ? ValueType::kHalf : ValueType::kFloat},
-          static_cast<int>(size[0]),
-          static_cast<int>(size[1]),
-          static_cast<int>(size[2]),
-          true};
+    file.fail("the grid's box has " + sizeText(box) +
+              " voxels, which is too many for a volume from a file of " + std::to_string(file.size()) +
+              " bytes");
 }
 
 const vdb::Entry& chosen(const InputFile& file, const vdb::Contents& contents, const std::string& name) {
@@ -329,64 +339,156 @@ void VdbWriter::close() {
   impl_->close();
 }
 
-Texels readVdb(const std::filesystem::path& path, const VdbReadOptions& options) {
-  InputFile file(path);
+namespace {
+
+// A grid as sparse as it lies in its file.
+struct StoredGrid {
+  FloatTree tree;
+  CoordBBox box;
+  TexelShape shape;  // of the box
+  TexelNotes notes;
+};
+
+StoredGrid readGrid(InputFile& file, const std::filesystem::path& path, const VdbReadOptions& options) {
   const vdb::Contents contents = vdb::readContents(file);
   const vdb::Entry& entry = chosen(file, contents, options.grid);
   const vdb::GridHead head = vdb::readGridHead(file, entry);
   const std::uint64_t buffers = vdb::checkFloatTree(file, entry, head);
 
-  try {
-    initialize();
-    std::ifstream in(path, std::ios_base::binary);
-    in.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
-    openvdb::io::setVersion(in, {contents.libraryMajor, contents.libraryMinor}, contents.fileVersion);
-    openvdb::io::setDataCompression(in, head.compression);
-    FloatTree tree;
-    in.seekg(static_cast<std::streamoff>(head.treeByte));
-    tree.readTopology(in, entry.half);
-    in.seekg(static_cast<std::streamoff>(buffers));
-    tree.readBuffers(in, entry.half);
+  initialize();
+  std::ifstream in(path, std::ios_base::binary);
+  in.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
+  openvdb::io::setVersion(in, {contents.libraryMajor, contents.libraryMinor}, contents.fileVersion);
+  openvdb::io::setDataCompression(in, head.compression);
+  StoredGrid grid;
+  in.seekg(static_cast<std::streamoff>(head.treeByte));
+  grid.tree.readTopology(in, entry.half);
+  in.seekg(static_cast<std::streamoff>(buffers));
+  grid.tree.readBuffers(in, entry.half);
 
-    const CoordBBox box = boxOf(file, head, tree);
-    Texels texels(shapeOf(file, box, entry.half));
-    texels.notes.name = entry.name;
-    for (const vdb::Entry& other : contents.grids)
-      if (&other != &entry) texels.notes.leftOut.push_back("grid " + other.name);
-    texels.notes.voxelSizeM = head.scale;
-    texels.notes.firstVoxelM =
-        head.translation + head.scale * glm::dvec3(box.min().x(), box.min().y(), box.min().z());
-    for (const auto& [key, text] : head.texts)
-      if (!isReserved(key)) texels.notes.metadata[key] = text;
+  grid.box = boxOf(file, head, grid.tree);
+  grid.shape = shapeOf(file, grid.box, entry.half);
+  grid.notes.name = entry.name;
+  for (const vdb::Entry& other : contents.grids)
+    if (&other != &entry) grid.notes.leftOut.push_back("grid " + other.name);
+  grid.notes.voxelSizeM = head.scale;
+  const Coord& min = grid.box.min();
+  grid.notes.firstVoxelM = head.translation + head.scale * glm::dvec3(min.x(), min.y(), min.z());
+  for (const auto& [key, text] : head.texts)
+    if (!isReserved(key)) grid.notes.metadata[key] = text;
+  return grid;
+}
 
-    DenseBox dense(texels, box.min());
-    const float background = tree.background();
-    if (background != 0.0f) dense.fill(box, background);
-    auto tile = tree.cbeginValueAll();
-    tile.setMaxDepth(FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile)
-      if (tile.getValue() != background) {
-        CoordBBox where;
-        tile.getBoundingBox(where);
-        dense.fill(where, tile.getValue());
-      }
-    std::array<float, kLeafSide> row;
-    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-      const Coord origin = leaf->origin();
-      for (int z = 0; z < kLeafSide; ++z)
-        for (int y = 0; y < kLeafSide; ++y) {
-          for (int x = 0; x < kLeafSide; ++x)
-            row[static_cast<std::size_t>(x)] = leaf->getValue(Leaf::coordToOffset({x, y, z}));
-          dense.put(origin.x(), origin.y() + y, origin.z() + z, row);
-        }
+// Calls tile(box, value) for each that is not the background, and row(x, y, z, values) for what leaves hold.
+template <class Tile, class Row>
+void visitValues(const FloatTree& tree, const Tile& tile, const Row& row) {
+  auto it = tree.cbeginValueAll();
+  it.setMaxDepth(FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; it; ++it)
+    if (it.getValue() != tree.background()) {
+      CoordBBox where;
+      it.getBoundingBox(where);
+      tile(where, it.getValue());
     }
-    requireFinite(texels, path);
-    return texels;
+  std::array<float, kLeafSide> values;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    const Coord origin = leaf->origin();
+    for (int z = 0; z < kLeafSide; ++z)
+      for (int y = 0; y < kLeafSide; ++y) {
+        for (int x = 0; x < kLeafSide; ++x)
+          values[static_cast<std::size_t>(x)] = leaf->getValue(Leaf::coordToOffset({x, y, z}));
+        row(origin.x(), origin.y() + y, origin.z() + z, values);
+      }
+  }
+}
+
+// Over the voxels of a box.
+class Statistics {
+ public:
+  Statistics(const InputFile& file, const CoordBBox& box) : file_(file), box_(box) {}
+
+  void add(CoordBBox where, float value) {
+    where.intersect(box_);
+    if (where.empty()) return;
+    const Coord dim = where.dim();
+    add(where.min(), value, static_cast<double>(dim.x()) * dim.y() * dim.z());
+  }
+  void add(int x0, int y, int z, std::span<const float> values) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (const Coord at(x0 + static_cast<int>(i), y, z); box_.isInside(at)) add(at, values[i], 1.0);
+  }
+  // The rest of the box is background.
+  void into(float background, VdbSummary& summary) {
+    const Coord dim = box_.dim();
+    const double all = static_cast<double>(dim.x()) * dim.y() * dim.z();
+    if (all > voxels_) add(box_.min(), background, all - voxels_);
+    summary.min = min_, summary.max = max_, summary.mean = sum_ / all;
+  }
+
+ private:
+  void add(const Coord& at, float value, double voxels) {
+    if (!std::isfinite(value)) {
+      const Coord place = at - box_.min();
+      file_.fail("no finite number at texel (" + std::to_string(place.x()) + ", " +
+                 std::to_string(place.y()) + ", " + std::to_string(place.z()) + ")");
+    }
+    min_ = std::min(min_, value), max_ = std::max(max_, value);
+    sum_ += voxels * static_cast<double>(value);
+    voxels_ += voxels;
+  }
+
+  const InputFile& file_;
+  CoordBBox box_;
+  float min_ = std::numeric_limits<float>::infinity(), max_ = -min_;
+  double sum_ = 0.0, voxels_ = 0.0;
+};
+
+// What OpenVDB throws as an IoError.
+template <class Read>
+auto reading(const InputFile& file, const Read& read) {
+  try {
+    return read();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
     file.fail(std::string("damaged: ") + e.what());
   }
+}
+
+}  // namespace
+
+Texels readVdb(const std::filesystem::path& path, const VdbReadOptions& options) {
+  InputFile file(path);
+  return reading(file, [&] {
+    StoredGrid grid = readGrid(file, path, options);
+    requireDense(file, grid.box, grid.shape);
+    Texels texels(grid.shape);
+    texels.notes = std::move(grid.notes);
+    DenseBox dense(texels, grid.box.min());
+    if (grid.tree.background() != 0.0f) dense.fill(grid.box, grid.tree.background());
+    visitValues(
+        grid.tree, [&](const CoordBBox& where, float value) { dense.fill(where, value); },
+        [&](int x, int y, int z, std::span<const float> values) { dense.put(x, y, z, values); });
+    requireFinite(texels, path);
+    return texels;
+  });
+}
+
+VdbSummary readVdbSummary(const std::filesystem::path& path, const VdbReadOptions& options) {
+  InputFile file(path);
+  return reading(file, [&] {
+    StoredGrid grid = readGrid(file, path, options);
+    VdbSummary summary;
+    summary.shape = grid.shape;
+    summary.notes = std::move(grid.notes);
+    summary.activeVoxels = grid.tree.activeVoxelCount();
+    Statistics statistics(file, grid.box);
+    visitValues(
+        grid.tree, [&](const CoordBBox& where, float value) { statistics.add(where, value); },
+        [&](int x, int y, int z, std::span<const float> values) { statistics.add(x, y, z, values); });
+    statistics.into(grid.tree.background(), summary);
+    return summary;
+  });
 }
 
 }  // namespace welkin::io

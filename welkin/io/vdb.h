@@ -58,4 +58,15 @@ struct VdbReadOptions {
 // OpenVDB sees the tree, which it reads from a stream that throws at the end of the file.
 Texels readVdb(const std::filesystem::path& path, const VdbReadOptions& options = {});
 
+// What a grid holds, without making it dense: for boxes of any size below 2^31 voxels a side. Throws as
+// readVdb() does.
+struct VdbSummary {
+  TexelShape shape;  // of the box
+  TexelNotes notes;
+  std::uint64_t activeVoxels = 0;
+  float min = 0.0f, max = 0.0f;
+  double mean = 0.0;  // over all voxels of the box
+};
+VdbSummary readVdbSummary(const std::filesystem::path& path, const VdbReadOptions& options = {});
+
 }  // namespace welkin::io

@@ -26,6 +26,9 @@ VdbWriter::~VdbWriter() = default;
 void VdbWriter::write(std::span<const std::byte>) {}
 void VdbWriter::close() {}
 
+VdbSummary readVdbSummary(const std::filesystem::path& path, const VdbReadOptions&) {
+  fail("read", path);
+}
 Texels readVdb(const std::filesystem::path& path, const VdbReadOptions&) {
   fail("read", path);
 }

@@ -6,6 +6,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scratch.h"
@@ -175,6 +176,47 @@ TEST_F(Vdb, WhatIsNotADenseBoxIsRefused) {
   broken->tree().setValue({0, 0, 0}, 1.0f);
   broken->tree().setValue({2, 1, 0}, std::nanf(""));
   EXPECT_EQ(refusal(broken), "no finite number at texel (2, 1, 0)");
+}
+
+// Dense or far too sparse to be dense.
+TEST_F(Vdb, SummariesAreThoseOfTheBox) {
+  const Texels texels = someVolume("r16f", 21, 37, 11);
+  writeVdb(path(), texels);
+  VdbSummary summary = readVdbSummary(path());
+  EXPECT_EQ(summary.shape, texels.shape);
+  EXPECT_EQ(summary.notes.firstVoxelM, texels.notes.firstVoxelM);
+  EXPECT_EQ(summary.activeVoxels, readByOpenVdb()->activeVoxelCount());
+  float least = 1e9f, most = -1e9f;
+  double sum = 0.0;
+  for (int z = 0; z < 11; ++z)
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 21; ++x) {
+        const float value = texels.value(x, y, z);
+        least = std::min(least, value), most = std::max(most, value);
+        sum += static_cast<double>(value);
+      }
+  EXPECT_EQ(summary.min, least);
+  EXPECT_EQ(summary.max, most);
+  EXPECT_NEAR(summary.mean, sum / (21 * 37 * 11), 1e-12);
+
+  const FloatGrid::Ptr grid = FloatGrid::create(0.5f);
+  grid->tree().fill(openvdb::CoordBBox(0, 0, 0, 4095, 4095, 4095), 2.0f);
+  grid->tree().setValue({99999, -1, 0}, -1.0f);
+  writeByOpenVdb({grid}, 6);
+  summary = readVdbSummary(path());
+  EXPECT_EQ(summary.shape.nx, 100000);
+  EXPECT_EQ(summary.shape.ny, 4097);
+  EXPECT_EQ(summary.shape.nz, 4096);
+  EXPECT_EQ(summary.activeVoxels, (std::uint64_t{1} << 36) + 1);
+  EXPECT_EQ(summary.min, -1.0f);
+  EXPECT_EQ(summary.max, 2.0f);
+  const double all = 100000.0 * 4097.0 * 4096.0, tile = 0x1p36;
+  EXPECT_NEAR(summary.mean, (2.0 * tile - 1.0 + 0.5 * (all - tile - 1.0)) / all, 1e-12);
+
+  grid->tree().setValue({5, 6, 7}, std::nanf(""));
+  writeByOpenVdb({grid}, 6);
+  EXPECT_NE(messageOf<IoError>([&] { readVdbSummary(path()); }).find("no finite number at texel (5, 7, 7)"),
+            std::string::npos);
 }
 
 TEST_F(Vdb, WhatIsNotWritten) {
