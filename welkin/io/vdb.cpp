@@ -343,7 +343,7 @@ namespace {
 
 // A grid as sparse as it lies in its file.
 struct StoredGrid {
-  FloatTree tree;
+  FloatTree::Ptr tree = std::make_shared<FloatTree>();
   CoordBBox box;
   TexelShape shape;  // of the box
   TexelNotes notes;
@@ -362,11 +362,11 @@ StoredGrid readGrid(InputFile& file, const std::filesystem::path& path, const Vd
   openvdb::io::setDataCompression(in, head.compression);
   StoredGrid grid;
   in.seekg(static_cast<std::streamoff>(head.treeByte));
-  grid.tree.readTopology(in, entry.half);
+  grid.tree->readTopology(in, entry.half);
   in.seekg(static_cast<std::streamoff>(buffers));
-  grid.tree.readBuffers(in, entry.half);
+  grid.tree->readBuffers(in, entry.half);
 
-  grid.box = boxOf(file, head, grid.tree);
+  grid.box = boxOf(file, head, *grid.tree);
   grid.shape = shapeOf(file, grid.box, entry.half);
   grid.notes.name = entry.name;
   for (const vdb::Entry& other : contents.grids)
@@ -465,9 +465,9 @@ Texels readVdb(const std::filesystem::path& path, const VdbReadOptions& options)
     Texels texels(grid.shape);
     texels.notes = std::move(grid.notes);
     DenseBox dense(texels, grid.box.min());
-    if (grid.tree.background() != 0.0f) dense.fill(grid.box, grid.tree.background());
+    if (grid.tree->background() != 0.0f) dense.fill(grid.box, grid.tree->background());
     visitValues(
-        grid.tree, [&](const CoordBBox& where, float value) { dense.fill(where, value); },
+        *grid.tree, [&](const CoordBBox& where, float value) { dense.fill(where, value); },
         [&](int x, int y, int z, std::span<const float> values) { dense.put(x, y, z, values); });
     requireFinite(texels, path);
     return texels;
@@ -481,12 +481,12 @@ VdbSummary readVdbSummary(const std::filesystem::path& path, const VdbReadOption
     VdbSummary summary;
     summary.shape = grid.shape;
     summary.notes = std::move(grid.notes);
-    summary.activeVoxels = grid.tree.activeVoxelCount();
+    summary.activeVoxels = grid.tree->activeVoxelCount();
     Statistics statistics(file, grid.box);
     visitValues(
-        grid.tree, [&](const CoordBBox& where, float value) { statistics.add(where, value); },
+        *grid.tree, [&](const CoordBBox& where, float value) { statistics.add(where, value); },
         [&](int x, int y, int z, std::span<const float> values) { statistics.add(x, y, z, values); });
-    statistics.into(grid.tree.background(), summary);
+    statistics.into(grid.tree->background(), summary);
     return summary;
   });
 }
