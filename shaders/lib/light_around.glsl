@@ -12,15 +12,18 @@ struct LightWeights {
 LightWeights lightWeights(CloudDepths depths, float cosSun, float viewHeight) {
   // How much cloud the view has before it: between what lies along the sun's line and along the vertical, as slabs have it.
   vec2 along = vec2(cosSun * cosSun, abs(viewHeight)) + 0.005;
-  float beyond = (along.x + along.y) / (along.x / max(cosSun > 0.0 ? depths.toSun : depths.fromSun, 0.01) +
-                                        along.y / max(viewHeight > 0.0 ? depths.up : depths.down, 0.01));
+  vec2 most = max(vec2(cosSun > 0.0 ? depths.toSun : depths.fromSun, viewHeight > 0.0 ? depths.up : depths.down), 0.01);
+  float beyond = exp(dot(along, log(most)) / (along.x + along.y));
   return LightWeights(2.7 * exp(-beyond / 14.0) - 0.3, 3.5 - 4.5 * exp(-beyond / 6.0));
 }
 
 vec3 weighedLight(LightMoments light, LightWeights weights, vec3 dir, float side) {
   vec3 w = weights.forward * dir;
   w.z = side * max(side * w.z + weights.upright, -1.0);
-  return max(vec3(dot(light.red, vec4(1.0, w)), dot(light.green, vec4(1.0, w)), dot(light.blue, vec4(1.0, w))), 0.0) / (1.0 + 0.5 * side * w.z);
+  vec3 mean = vec3(light.red.x, light.green.x, light.blue.x);
+  vec3 weighed = vec3(dot(light.red, vec4(1.0, w)), dot(light.green, vec4(1.0, w)), dot(light.blue, vec4(1.0, w))) / (1.0 + 0.5 * side * w.z);
+  // Away from a bright side light gets less and less, but never none, as what is linear would have it.
+  return mix(weighed, 0.25 * mean * mean / max(mean - weighed, 0.25 * mean + 1e-20), step(weighed, 0.5 * mean));
 }
 
 LightMoments mixMoments(LightMoments a, LightMoments b, float share) {
