@@ -8,7 +8,7 @@
 float airDither = 0.5;            // a pass's, in [0, 1): where in their stretches the places lie
 
 #ifndef WELKIN_AIR_SAMPLES
-#define WELKIN_AIR_SAMPLES 4
+#define WELKIN_AIR_SAMPLES 16
 #endif
 const int kAirSamples = WELKIN_AIR_SAMPLES;
 
