@@ -23,6 +23,8 @@ for scene in clear_noon fair_weather_noon stratocumulus_golden_hour overcast_rai
 done
 for scene in above_the_clouds sunset cirrus blue_hour glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture thunderstorm_day "$demo/thunderstorm_night.toml" --time 2026-09-26T09:00:00Z --size 960x540
+picture congestus "$here/congestus.toml" --size 960x540
+picture congestus_aside "$here/congestus.toml" --look 330,14 --size 960x540
 picture in_the_cloud "$here/above_the_clouds.toml" --eye 1700 --size 960x540
 picture between_layers "$here/sunset.toml" --time 2026-06-21T16:00:00Z --eye 3200 --look 260,-4 --size 960x540
 picture dome "$demo/fair_weather_noon.toml" --projection fisheye --size 640x640

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "welkin/core/random.h"
@@ -45,9 +46,9 @@ constexpr std::array<Habit, 11> kHabits = {{
     // nimbostratus: deep, dark, ragged beneath
     {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0, .12,
      .25, .30,  400,  1200,  .35, .80, 1.3, 220, .12, .60, .30, .20, .4},
-    // cumulonimbus: towers with an anvil
-    {1.2, 9000, 18000, 40000, .65, .10, .70, .25, 1.0,  1.30, 1.2, .0,  .75, .02,
-     .02, .16,  700,   1800,  .20, .35, 1.0, 200, .045, .025, .55, .15, 4.0},
+    // cumulonimbus: broad below, an anvil above that the wind draws out
+    {1.9, 12000, 24000, 50000, .80, .20, .38, .25, 1.0,  .50,  1.0, -.70, 1.05, .02,
+     .12, .13,   600,   1300,  .24, .30, 1.0, 160, .065, .035, .55, .40,  4.0},
     // altocumulus: a field of small cells in patches
     {1.2, 350, 800, 12000, .80, .30, .52, .45, 1.3, .55, 2.0, .35, 0, .20,
      .25, .55, 120, 300,   .40, .70, 1.2, 60,  .15, .35, .20, .20, .3},
@@ -68,6 +69,25 @@ constexpr std::array<Habit, 11> kHabits = {{
      .40, 1.2, 90,   220,  .30, .40, 1.5, 60,  .12, .60, .00, .20, .1},
 }};
 
+// Cumulus deeper than it is wide: towers that are broad below and round above.
+constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .84, .12, .40, .35, 1.0, 1.10, 2.0, -.30, 0,  .05,
+                              .06, .42, 250,  1200,  .28, .22, 1.0, 110, .08, .05,  .75, .15,  1.2};
+constexpr double kMediocrisM = 1300.0, kCongestusM = 2400.0;  // depths of either
+
+Habit mixed(const Habit& a, const Habit& b, double share) {
+  using Numbers = std::array<double, sizeof(Habit) / sizeof(double)>;
+  auto numbers = std::bit_cast<Numbers>(a);
+  const auto others = std::bit_cast<Numbers>(b);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = std::lerp(numbers[i], others[i], share);
+  return std::bit_cast<Habit>(numbers);
+}
+
+Habit habitOf(weather::Genus genus, double depthM) {
+  const Habit& habit = kHabits[static_cast<std::size_t>(genus)];
+  if (genus != weather::Genus::kCumulus) return habit;
+  return mixed(habit, kCongestus, std::clamp((depthM - kMediocrisM) / (kCongestusM - kMediocrisM), 0.0, 1.0));
+}
+
 }  // namespace
 
 bool isIce(weather::Genus genus) {
@@ -87,8 +107,8 @@ double dropletDiameterUm(const weather::Weather& weather) {
 }
 
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter) {
-  const Habit& habit = kHabits[static_cast<std::size_t>(layer.genus)];
   const double depth = layer.topM - layer.baseM;
+  const Habit habit = habitOf(layer.genus, depth);
   const double cell = std::clamp(habit.cell * depth, habit.cellMinM, habit.cellMaxM);
   const double blob = std::clamp(habit.blob * depth, habit.blobMinM, habit.blobMaxM);
   const double weights =
@@ -136,7 +156,8 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
       glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
   s.edge = static_cast<float>(habit.edge);
   s.lift = static_cast<float>(habit.lift);
-  s.reachM = static_cast<float>(std::min(0.08 * cell, 0.25 * depth));
+  const double underAnvil = habit.anvil > 0.0 ? 0.14 * depth / habit.anvil : depth;
+  s.reachM = static_cast<float>(std::min({0.08 * cell, 0.25 * depth, underAnvil}));
   return s;
 }
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "welkin/scene/cloud_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+
+#include "welkin/field/cloud_field.h"
+#include "welkin/scene/cloud_cover.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::scene {
+namespace {
+
+using weather::Genus;
+
+weather::Layer layerOf(Genus genus, double depthM, double oktas) {
+  weather::Layer layer = weather::typicalLayer(genus, 45.0);
+  layer.topM = layer.baseM + depthM;
+  layer.oktas = oktas;
+  return layer;
+}
+
+// Clouds of one layer, its cover measured and set, seen at heights that are shares of its depth. Places move
+// with the shear, so that what stands on one another has one place.
+class Shape {
+ public:
+  Shape(Genus genus, double depthM, double oktas)
+      : noise_(field::makeCloudNoise(1)), clouds_(made(layerOf(genus, depthM, oktas))) {}
+
+  bool at(int x, int y, double height) const {
+    const field::CloudLayer& l = clouds_.layers()[0];
+    const auto h = static_cast<float>(height);
+    const glm::vec2 p = kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces) + l.shearM * h;
+    const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
+    return clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop}) > 0.0f;
+  }
+  // Of places, those that have cloud.
+  double share(double height) const {
+    int n = 0;
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x) n += at(x, y, height);
+    return n / static_cast<double>(kPlaces * kPlaces);
+  }
+  // Of places with cloud at one height, those that have cloud at the other.
+  double carried(double height, double other) const {
+    int n = 0, both = 0;
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x)
+        if (at(x, y, height)) ++n, both += at(x, y, other);
+    return both / static_cast<double>(n);
+  }
+
+ private:
+  static constexpr int kPlaces = 150;
+  static constexpr float kSpacingM = 600.0f;
+
+  field::CloudField made(const weather::Layer& layer) const {
+    Scene scene;
+    weather::Weather weather;
+    weather.layers = {layer};
+    return cloudsAt(scene, weather, calibrateClouds(scene, weather, noise_), noise_, 0.0);
+  }
+  std::shared_ptr<const field::CloudNoise> noise_;
+  field::CloudField clouds_;
+};
+
+TEST(CloudShapes, ThundercloudsAreBroadBelowAndBroaderAbove) {
+  for (const double oktas : {2.0, 6.0}) {
+    SCOPED_TRACE(oktas);
+    const Shape storm(Genus::kCumulonimbus, 9000.0, oktas);
+    const double base = storm.share(0.1), waist = storm.share(0.55), anvil = storm.share(0.9);
+    EXPECT_GT(waist, 0.003);
+    EXPECT_GT(base, 2.0 * waist);
+    EXPECT_GT(anvil, base);
+    // A trunk stands on a base and bears an anvil.
+    EXPECT_GT(storm.carried(0.55, 0.1), 0.98);
+    EXPECT_GT(storm.carried(0.55, 0.9), 0.98);
+  }
+}
+
+TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
+  const Shape heaps(Genus::kCumulus, 1000.0, 4.0), towers(Genus::kCumulus, 3500.0, 4.0);
+  EXPECT_LT(heaps.share(0.55), 0.3 * heaps.share(0.1));
+  EXPECT_GT(towers.share(0.55), 0.35 * towers.share(0.1));
+  EXPECT_GT(towers.carried(0.55, 0.1), 0.98);
+}
+
+// Heaps turn into towers as they get deeper, and nowhere at once.
+TEST(CloudShapes, MoveWithTheDepth) {
+  const auto numbers = [](double depthM) {
+    std::map<std::string, float> all;
+    field::forEachMember(shapeOf(layerOf(Genus::kCumulus, depthM, 4.0), 1, 0.0),
+                         [&](const char* name, auto value) {
+                           if constexpr (std::is_same_v<decltype(value), float>) all[name] = value;
+                         });
+    return all;
+  };
+  for (double depthM = 1000.0; depthM < 4000.0; depthM += 50.0) {
+    const auto here = numbers(depthM), there = numbers(depthM + 1.0);
+    ASSERT_EQ(here.size(), there.size());
+    for (const auto& [name, value] : here)
+      EXPECT_NEAR(there.at(name), value, 0.004f * std::abs(value) + 1e-3f)
+          << name << " at " << depthM << " m";
+  }
+  EXPECT_NE(numbers(1300.0).at("dome"), numbers(1500.0).at("dome"));
+  EXPECT_EQ(numbers(2400.0).at("dome"), numbers(3000.0).at("dome"));
+}
+
+}  // namespace
+}  // namespace welkin::scene
