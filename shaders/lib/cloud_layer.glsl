@@ -23,7 +23,7 @@ struct CloudLayer {
 
   float dome;           // fall of the surface towards the top, sd
   float domePower;      // 1: a cone, large: a cylinder with a rounded top
-  float belly;          // rise of the surface towards the base, sd (0: flat base)
+  float belly;          // how much the surface is drawn in towards the base, sd (0: flat base; less: broader there)
   float anvil;          // widening below the top, sd
   float bottomSoft;     // share of the depth over which density fades in above the base
   float topSoft;        // the same below the top

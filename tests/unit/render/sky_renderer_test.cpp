@@ -168,6 +168,26 @@ TEST_F(Sky, TheMoonBrightensTheNight) {
   }
 }
 
+// Opposite to the glow of dusk: clouds have light from all of the sky, and none is much bluer than the bluest
+// of it.
+TEST_F(Sky, CloudsAtDuskAreLittleBluerThanTheSky) {
+  const auto leastRed = [&](scene::Scene s) {  // of the pixels over the horizon, red for each blue
+    const Image<float> picture = drawn(sized(looking(s, 110.0, 14.0, 60.0), 96, 54));
+    double least = 1e9;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const glm::vec3 c = pixel(picture, x, y);
+        least = std::min(least, static_cast<double>(c.x / c.z));
+      }
+    return least;
+  };
+  const double clear = leastRed(clearScene(-3.0));
+  for (const Genus genus : {Genus::kCumulus, Genus::kCumulonimbus, Genus::kAltocumulus}) {
+    SCOPED_TRACE(static_cast<int>(genus));
+    EXPECT_GT(leastRed(cloudyScene(-3.0, {genus})), 0.7 * clear);
+  }
+}
+
 // What a picture has of fine structure that the truth lacks: the relative difference of the two less its mean
 // over the four neighbours, in the median.
 double grain(const Image<float>& picture, const Image<float>& truth) {
