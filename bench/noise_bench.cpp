@@ -58,6 +58,7 @@ std::vector<Workload> workloads() {
     p.smooth = smooth;
     return p;
   };
+  constexpr double kTime = 0.4;
   return {
       {"W1", {.frequency = cells(6), .octaves = 6}, 128, true},
       {"W2", {.dimensions = 2, .frequency = cells(3), .octaves = 10}, 1024, true},
@@ -69,6 +70,8 @@ std::vector<Workload> workloads() {
       {"V2", value({.dimensions = 2, .frequency = cells(3), .octaves = 10}, true), 1024, false},
       {"V3", value({.frequency = cells(6), .octaves = 6}, false), 128, false},
       {"V4", value({.frequency = cells(6), .octaves = 6}, true), 128, false},
+      {"V5", value({.frequency = cells(6), .octaves = 6, .time = kTime}, false), 128, false},
+      {"V6", value({.frequency = cells(6), .octaves = 6, .time = kTime}, true), 128, false},
   };
 }
 

@@ -10,6 +10,7 @@
 //   V2  the same smoothed over 27 lattice points
 //   V3  bare value noise with the octaves of W1, 128^3, float
 //   V4  the same smoothed
+//   V5, V6  V3 and V4 at a time
 // into a buffer that has been written before; and what writing memory costs.
 #pragma once
 

@@ -108,6 +108,18 @@ class Noise(ProgramTest):
         self.assertEqual(x, y)
         self.assertEqual(x, z)  # whole tiles
 
+    def test_every_kind_evolves(self):
+        for kind in ("perlin", "value", "cellular", "perlin-worley", "curl", "distorted"):
+            def frame(time):
+                self.succeed("noise", "--size", "24x16", "--kind", kind, "--time", time, "--time-period", "3", "-o", "x.dds",
+                             "--format", "rgba32f" if kind == "perlin-worley" else "rgb32f" if kind == "curl" else "r32f")
+                return (self.folder / "x.dds").read_bytes()
+            self.assertEqual(frame("0.5"), frame("3.5"), kind)
+            self.assertNotEqual(frame("0.5"), frame("0.75"), kind)
+        self.succeed("noise", "--size", "12x8x6", "--kind", "value", "--time", "0.5", "-o", "x.vdb")
+        self.fail_with(2, "in space none is left for time", "noise", "--size", "12x8x6", "--kind", "value", "--table", "published",
+                       "--time", "0.5", "-o", "x.dds")
+
     def test_extensions_in_any_case(self):
         for name, same in (("x.DDS", "y.dds"), ("x.PNG", "y.png")):
             for out in (name, same):

@@ -214,7 +214,9 @@ struct ValueLine {
 struct ValueTables {
   ValueSettings settings;
   int taps;
-  float weight;  // 1 where the fractal bends the octave
+  float weight;                      // 1 where the fractal bends the octave
+  const ValueClock* clock;           // null: no time
+  float timeWeight[4][kTimePhases];  // the clock's, of hashes counted in kOwnStep
   ValueLine axis[3];
 };
 
@@ -264,6 +266,8 @@ struct FillJob {
 // it.
 ValueLine makeValueLine(const ValueSettings& settings, int axis, std::span<const CellPlace> places,
                         Scratch& memory, std::mutex& taking);
+// What of a table does not lie on axes; keeps the noise's clock.
+void setValue(const Value& noise, float weight, ValueTables& out);
 // The tables of job.values.
 void makeValueTables(FillJob& job, Scratch& memory);
 

@@ -119,7 +119,6 @@ void validate(const NoiseParams& p) {
           "the published table has three axes: in space none is left for time");
   require(p.kind != Kind::kPerlinWorley || p.normalisation != Normalisation::kUnitVariance,
           "Perlin-Worley noise fills [0, 1] by itself and has no unit variance");
-  require(p.kind != Kind::kValue || !p.time, "value noise has no time axis");
 }
 
 }  // namespace welkin::noise

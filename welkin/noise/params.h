@@ -37,7 +37,8 @@ enum class Feature { kF1, kF2, kF2MinusF1 };  // distance to the nearest point, 
 enum class Table {
   kSeeded,     // from the seed; each octave has its own, and none repeats within 2^32 cells
   kPublished,  // Perlin's permutation: his values exactly, repeats every 256 cells; or the hash of value
-               // noise as its source has it, the same for every octave (noise/value.h)
+               // noise as its source has it, the same for every octave (noise/value.h). Time is their third
+               // axis, in a plane
 };
 
 // What becomes of the sum v = sum_o amplitude persistence^o n_o.

@@ -41,8 +41,7 @@ struct Builder {
     }
     int count = dimensions();
     if (p.time) {
-      const double pace = std::pow(p.timeLacunarity, octave);
-      axes[count] = Axis(key(stream, which, octave, 3), pace, 0.0, p.timePeriod);
+      axes[count] = timeAxis(key(stream, which, octave, 3), octave);
       ++count;
     }
     const bool published = p.table == Table::kPublished;
@@ -62,7 +61,16 @@ struct Builder {
     const double factor = std::pow(p.lacunarity, octave);
     ValueTerm term{Value(valueSettings(octave)), {}, weight(octave)};
     for (int i = 0; i < dimensions(); ++i) term.axes[i] = axis(0, i, factor);
+    if (p.time && p.table == Table::kPublished) term.beyond = timeOf(octave);
     return term;
+  }
+
+  Axis timeAxis(std::uint32_t key, int octave) const {
+    return {key, std::pow(p.timeLacunarity, octave), 0.0, p.timePeriod};
+  }
+  CellPlace timeOf(int octave) const {
+    const Span span = timeAxis(0, octave).at(*p.time);
+    return {span.low, span.inside};
   }
 
   ValueSettings valueSettings(int octave) const {
@@ -74,6 +82,14 @@ struct Builder {
     if (p.tile)
       for (int i = 0; i < dimensions(); ++i)
         s.period[i] = static_cast<int>(std::lround(p.frequency[i] * std::pow(p.lacunarity, octave)));
+    if (!p.time) return s;
+    const auto period = static_cast<int>(timeAxis(0, octave).period());
+    if (p.table == Table::kPublished) {
+      s.period.z = period;  // its third axis
+    } else {
+      s.time = timeOf(octave);
+      s.timePeriod = period;
+    }
     return s;
   }
 
@@ -124,11 +140,14 @@ Spread spreadOf(const NoiseParams& p) {
     }
     case Kind::kValue: {
       ValueSettings settings = Builder{p}.valueSettings(0);
-      settings.period = glm::ivec3(0);  // over the infinite lattice
+      settings.period = glm::ivec3(0);                 // over the infinite lattice
+      if (settings.time) settings.time = CellPlace{};  // one measure for all times, which it fits
+      settings.timePeriod = 0;
       const Value noise(settings);
-      const double bound = noise.bound(dimensions);
-      if (bent) return spreadOfBent(noise, p.fractal, dimensions == 2, bound);
-      return {0.0, noise.deviation(dimensions), -bound, bound};
+      const int used = p.time && p.table == Table::kPublished ? 3 : dimensions;
+      const double bound = noise.bound(used);
+      if (bent) return spreadOfBent(noise, p.fractal, used == 2, bound);
+      return {0.0, noise.deviation(used), -bound, bound};
     }
     case Kind::kCellular:
       return kCells[dimensions - 2][static_cast<int>(p.feature)];
@@ -208,7 +227,9 @@ Plan makePlan(const NoiseParams& p) {
   const Builder b{p};
   const int dimensions = b.dimensions();
   Plan plan;
-  plan.normalise = normalisation(p, spreadOf(p));
+  const bool measured =
+      p.normalisation == Normalisation::kUnitRange || p.normalisation == Normalisation::kUnitVariance;
+  plan.normalise = normalisation(p, measured ? spreadOf(p) : Spread{0.0, 1.0, -1.0, 1.0});
   plan.quantise = quantisation(p);
   switch (p.kind) {
     case Kind::kPerlin:

@@ -31,6 +31,7 @@ struct ValueTerm {
   Value noise;
   std::array<Axis, 3> axes;  // in a plane two
   double weight;
+  CellPlace beyond = {};  // of a plane along z: a lattice point, or the time of the published table
 };
 
 struct CellTerm {

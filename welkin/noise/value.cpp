@@ -19,10 +19,32 @@ CellPlace placeOf(double x) {
   return {static_cast<std::int64_t>(cell), x - cell};
 }
 
+ValueClock clockOf(const ValueSettings& settings) {
+  if (!settings.time) return {};
+  const CellPlace& time = *settings.time;
+  const Taps taps = tapsOf(settings.interpolation);
+  ValueClock clock{taps.count(), kTimePhases, {}, {}};
+  for (int t = 0; t <= taps.count(); ++t) {
+    const std::uint32_t whole = wrappedCell(time.cell + taps.first - 1 + t, settings.timePeriod);
+    clock.first[t] = ownRow(timeSeed(settings.seed, whole), 0, 0).first;
+  }
+  for (int phase = 0; phase < kTimePhases; ++phase) {
+    double inside = time.inside + static_cast<double>(phase) / kTimePhases;
+    if (inside >= 1.0) {
+      inside -= 1.0;
+      clock.later = std::min(clock.later, phase);
+    }
+    const auto weight = weightsAt(settings.interpolation, inside);
+    for (int t = 0; t < taps.count(); ++t) clock.weight[t][phase] = weight[taps.first + t];
+  }
+  return clock;
+}
+
 }  // namespace
 
-Value::Value(const ValueSettings& settings) : settings_(settings) {
+Value::Value(const ValueSettings& settings) : settings_(settings), clock_(clockOf(settings)) {
   assert(settings.period.x >= 0 && settings.period.y >= 0 && settings.period.z >= 0);
+  assert(!settings.time || (settings.seed != 0 && settings.timePeriod >= 0));
 }
 
 float Value::hash(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -30,7 +52,14 @@ float Value::hash(std::int64_t x, std::int64_t y, std::int64_t z) const {
   const std::uint32_t i = wrappedCell(x, period.x), j = wrappedCell(y, period.y),
                       k = wrappedCell(z, period.z);
   if (settings_.seed == 0) return sourceHash(i + sourceRow(j, k));
-  return ownHash(ownColumn(i), ownRow(settings_.seed, j, k));
+  const OwnRow row = ownRow(settings_.seed, j, k);
+  if (!settings_.time) return ownHash(ownColumn(i), row);
+  const std::uint64_t point = ownPoint(ownColumn(i), row.rest);
+  const int phase = timePhase(point), passed = phase >= clock_.later ? 1 : 0;
+  double sum = 0.0;
+  for (int t = 0; t < clock_.taps; ++t)
+    sum += clock_.weight[t][phase] * kOwnStep * ownSteps(clock_.first[passed + t], point);
+  return static_cast<float>(sum);
 }
 
 float Value::lattice(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -91,7 +120,8 @@ void Value::add(std::span<float> out, float weight, std::span<const CellPlace> x
   const ScratchLoan memory, scratch;
   memory->reset();
   std::mutex alone;
-  ValueTables octave{settings_, tapsOf(settings_.interpolation).count(), weight, {}};
+  ValueTables octave{};
+  setValue(*this, weight, octave);
   const std::span<const CellPlace> places[3] = {xs, ys, zs};
   glm::ivec3 size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -130,12 +160,14 @@ double Value::deviation(int dimensions) const {
             for (int a = -1; a <= 1; ++a) overlap += stencil(a, b, c) * stencil(a + i, b + j, c + k);
         sum += overlap * within[i + 3] * within[j + 3] * (dimensions == 3 ? within : at)[k + 3];
       }
+  if (settings_.time) sum *= within[3];  // the phases are all over a cell of time
   return std::sqrt(sum / 3.0);
 }
 
 double Value::bound(int dimensions) const {
   // Cubic weights sum to 1.5 in absolute value half way between two points, the others to 1.
-  return settings_.interpolation == Interpolation::kCubic ? std::pow(1.5, dimensions) : 1.0;
+  const int axes = dimensions + (settings_.time ? 1 : 0);
+  return settings_.interpolation == Interpolation::kCubic ? std::pow(1.5, axes) : 1.0;
 }
 
 }  // namespace welkin::noise

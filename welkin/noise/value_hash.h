@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "welkin/core/random.h"
+#include "welkin/noise/value_clock.h"
 
 namespace welkin::noise {
 
@@ -32,12 +33,26 @@ constexpr OwnRow ownRow(std::uint64_t seed, std::uint32_t y, std::uint32_t z) {
 // In [-1, 1), counted in kOwnStep.
 inline constexpr float kOwnStep = 0x1p-23f;
 inline constexpr std::int32_t kOwnHalf = 1 << 23;
+constexpr std::uint64_t ownPoint(std::uint64_t column, std::uint64_t rest) {  // what is shared by all seeds
+  return mixRest(column ^ rest) * kHashFactor;
+}
+constexpr std::int32_t ownSteps(std::uint64_t first, std::uint64_t point) {
+  return static_cast<std::int32_t>(mixRest(first ^ mixStart(point)) >> 40) - kOwnHalf;
+}
 constexpr std::int32_t ownSteps(std::uint64_t column, const OwnRow& row) {
-  const std::uint64_t h = mixRest(row.first ^ mixStart(mixRest(column ^ row.rest) * kHashFactor));
-  return static_cast<std::int32_t>(h >> 40) - kOwnHalf;
+  return ownSteps(row.first, ownPoint(column, row.rest));
 }
 constexpr float ownHash(std::uint64_t column, const OwnRow& row) {
   return static_cast<float>(ownSteps(column, row)) * kOwnStep;
+}
+
+// With a time: the seed of the noise that a whole time has, and a point's phase, in kTimePhases.
+constexpr std::uint64_t timeSeed(std::uint64_t seed, std::uint32_t time) {
+  return hashOf(seed, time);
+}
+constexpr int timePhase(std::uint64_t point) {
+  static_assert(kTimePhases == 16);
+  return static_cast<int>(point >> 60);
 }
 
 // The 27-point average from bare values: edges and corners weigh the same, so the sum over the cube does most

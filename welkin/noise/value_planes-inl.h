@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -23,8 +24,19 @@ namespace welkin::noise::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_AVX3
-// The project's own hash of kVectors vectors of points, side by side since each of its multiplications waits
-// for the one before.
+// ownPoint() of kHalves vectors, side by side since each of its multiplications waits for the one before.
+template <int kHalves, class D, class V = hn::Vec<D>>
+HWY_INLINE void ownPointVectors(D d, const std::uint64_t* HWY_RESTRICT columns, std::uint64_t rest,
+                                V (&x)[kHalves]) {
+  const auto half = static_cast<int>(hn::Lanes(d));
+  const auto a = hn::Set(d, kMixFactors[0]), b = hn::Set(d, kMixFactors[1]), factor = hn::Set(d, kHashFactor);
+  const auto rests = hn::Set(d, rest);
+  for (int c = 0; c < kHalves; ++c) x[c] = hn::Mul(hn::Xor(hn::LoadU(d, columns + c * half), rests), a);
+  for (auto& v : x) v = hn::Mul(hn::Xor(v, hn::ShiftRight<27>(v)), b);
+  for (auto& v : x) v = hn::Mul(hn::Xor(v, hn::ShiftRight<31>(v)), factor);
+}
+
+// The project's own hash of kVectors vectors of points.
 template <int kVectors, class T>
 HWY_INLINE void ownHashVectors(const std::uint64_t* HWY_RESTRICT columns, const OwnRow& row,
                                T* HWY_RESTRICT out) {
@@ -32,14 +44,11 @@ HWY_INLINE void ownHashVectors(const std::uint64_t* HWY_RESTRICT columns, const 
   const hn::Repartition<std::int32_t, decltype(d)> di;
   const hn::Repartition<float, decltype(d)> df;
   const auto half = static_cast<int>(hn::Lanes(d));
-  const auto a = hn::Set(d, kMixFactors[0]), b = hn::Set(d, kMixFactors[1]), factor = hn::Set(d, kHashFactor);
-  const auto rest = hn::Set(d, row.rest);
+  const auto a = hn::Set(d, kMixFactors[0]), b = hn::Set(d, kMixFactors[1]);
   const auto first = hn::Set(d, row.first);
   constexpr int kHalves = 2 * kVectors;
   hn::Vec<decltype(d)> x[kHalves];
-  for (int c = 0; c < kHalves; ++c) x[c] = hn::Mul(hn::Xor(hn::LoadU(d, columns + c * half), rest), a);
-  for (auto& v : x) v = hn::Mul(hn::Xor(v, hn::ShiftRight<27>(v)), b);
-  for (auto& v : x) v = hn::Mul(hn::Xor(v, hn::ShiftRight<31>(v)), factor);
+  ownPointVectors(d, columns, row.rest, x);
   for (auto& v : x) v = hn::Mul(hn::Xor3(first, v, hn::ShiftRight<30>(v)), a);
   for (auto& v : x) v = hn::Mul(hn::Xor(v, hn::ShiftRight<27>(v)), b);
   // The upper 24 bits count, which the last step leaves as they are.
@@ -52,6 +61,42 @@ HWY_INLINE void ownHashVectors(const std::uint64_t* HWY_RESTRICT columns, const 
     else
       hn::StoreU(hn::Mul(hn::ConvertTo(df, steps), hn::Set(df, kOwnStep)), df, out + c * half);
   }
+}
+
+// The same at a time: hashes of kTaps whole times, which share what is known of the points, interpolated.
+template <int kVectors, int kTaps>
+HWY_INLINE void timedHashVectors(const std::uint64_t* HWY_RESTRICT columns, std::uint64_t rest,
+                                 const ValueTables& octave, float* HWY_RESTRICT out) {
+  const hn::ScalableTag<std::uint64_t> d;
+  const hn::Repartition<std::int32_t, decltype(d)> di;
+  const hn::Repartition<float, decltype(d)> df;
+  static_assert(hn::MaxLanes(df) == kTimePhases);
+  const auto a = hn::Set(d, kMixFactors[0]), b = hn::Set(d, kMixFactors[1]);
+  const auto later = hn::Set(d, static_cast<std::uint64_t>(octave.clock->later));
+  constexpr int kHalves = 2 * kVectors;
+  hn::Vec<decltype(d)> x[kHalves], phase[kHalves];
+  ownPointVectors(d, columns, rest, x);
+  for (int c = 0; c < kHalves; ++c) phase[c] = hn::ShiftRight<60>(x[c]);
+  for (auto& v : x) v = hn::Xor(v, hn::ShiftRight<30>(v));
+  const auto together = [di](const auto* v) HWY_ATTR {
+    return hn::ConcatEven(di, hn::BitCast(di, v[1]), hn::BitCast(di, v[0]));
+  };
+  hn::Vec<decltype(df)> sum[kVectors];
+  for (int t = 0; t < kTaps; ++t) {
+    const auto before = hn::Set(d, octave.clock->first[t]), after = hn::Set(d, octave.clock->first[t + 1]);
+    const auto weights = hn::LoadU(df, octave.timeWeight[t]);
+    hn::Vec<decltype(d)> h[kHalves];
+    for (int c = 0; c < kHalves; ++c)
+      h[c] = hn::Mul(hn::Xor(x[c], hn::IfThenElse(hn::Lt(phase[c], later), before, after)), a);
+    for (auto& v : h) v = hn::Mul(hn::Xor(v, hn::ShiftRight<27>(v)), b);
+    for (auto& v : h) v = hn::ShiftRight<40>(v);
+    for (int k = 0; k < kVectors; ++k) {
+      const auto steps = hn::ConvertTo(df, hn::Sub(together(h + 2 * k), hn::Set(di, kOwnHalf)));
+      const auto weight = hn::TableLookupLanes(weights, hn::IndicesFromVec(df, together(phase + 2 * k)));
+      sum[k] = t == 0 ? hn::Mul(weight, steps) : hn::Add(sum[k], hn::Mul(weight, steps));
+    }
+  }
+  for (int k = 0; k < kVectors; ++k) hn::StoreU(sum[k], df, out + k * static_cast<int>(hn::Lanes(df)));
 }
 #endif
 
@@ -70,6 +115,30 @@ void ownHashes(const std::uint64_t* HWY_RESTRICT columns, int count, const OwnRo
       out[i] = ownSteps(columns[i], of);
     else
       out[i] = ownHash(columns[i], of);
+  }
+#endif
+}
+// The same at the octave's time, of the project's own hash.
+template <int kTaps>
+void timedHashes(const std::uint64_t* HWY_RESTRICT columns, int count, std::uint64_t rest,
+                 const ValueTables& octave, float* HWY_RESTRICT out) {
+#if HWY_TARGET == HWY_AVX3
+  const auto lanes = static_cast<int>(hn::Lanes(hn::ScalableTag<float>()));
+  int i = 0;
+  for (; i + lanes < count; i += 2 * lanes) timedHashVectors<2, kTaps>(columns + i, rest, octave, out + i);
+  if (i < count) timedHashVectors<1, kTaps>(columns + i, rest, octave, out + i);
+#else
+  const int later = octave.clock->later;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t point = ownPoint(columns[i], rest);
+    const int phase = timePhase(point);
+    const std::uint64_t* const first = octave.clock->first.data() + (phase >= later ? 1 : 0);
+    const auto part = [&](int t) {
+      return octave.timeWeight[t][phase] * static_cast<float>(ownSteps(first[t], point));
+    };
+    float sum = part(0);
+    for (int t = 1; t < kTaps; ++t) sum += part(t);
+    out[i] = sum;
   }
 #endif
 }
@@ -137,6 +206,10 @@ class ValuePlanes {
     const std::size_t size = static_cast<std::size_t>(stride()) * rows;
     for (int t = 0; t < octave.taps; ++t) values_[t] = {-1, scratch.take<float>(size)};
     if (!octave.settings.smooth) return;
+    if (octave.clock != nullptr) {
+      timed_ = scratch.take<float>(static_cast<std::size_t>(stride()));
+      std::fill_n(timed_, stride(), 0.0f);
+    }
     if (octave.settings.seed == 0)
       take(scratch, size, source_);
     else
@@ -198,13 +271,31 @@ class ValuePlanes {
     const std::uint64_t seed = octave_->settings.seed;
     for (int r = 0; r < rows_; ++r, out += stride()) {
       const std::uint32_t y = octave_->axis[1].index[firstY_ + r];
-      if (std::is_same_v<T, std::int32_t> || seed != 0) {
+      if (octave_->clock != nullptr) {
+        hashRowInTime(ownRow(seed, y, z), out);
+      } else if (std::is_same_v<T, std::int32_t> || seed != 0) {
         ownHashes(x.column + firstX_, points_, ownRow(seed, y, z), out);
       } else {
         if constexpr (std::is_same_v<T, float>)
           sourceHashes(x.index + firstX_, points_, sourceRow(y, z), out);
       }
     }
+  }
+
+  void hashRowInTime(const OwnRow& row, float* out) const {
+    const std::uint64_t* const columns = octave_->axis[0].column + firstX_;
+    if (octave_->taps == 2)
+      timedHashes<2>(columns, points_, row.rest, *octave_, out);
+    else
+      timedHashes<4>(columns, points_, row.rest, *octave_, out);
+  }
+  // To the nearest step, so that they are smoothed as at no time.
+  void hashRowInTime(const OwnRow& row, std::int32_t* out) const {
+    const hn::ScalableTag<float> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    hashRowInTime(row, timed_);
+    for (int i = 0; i < points_; i += static_cast<int>(hn::Lanes(d)))
+      hn::Store(hn::NearestInt(hn::Mul(hn::Load(d, timed_ + i), hn::Set(d, 1.0f / kOwnStep))), di, out + i);
   }
 
   template <class T, class Sum>
@@ -233,7 +324,8 @@ class ValuePlanes {
   const ValueTables* octave_;
   int firstX_, points_, firstY_, rows_;
   Plane<float> values_[4];
-  union {  // by whose hash it is
+  float* timed_ = nullptr;  // a row
+  union {                   // by whose hash it is
     Bare<std::int32_t, std::int32_t> own_;
     Bare<float, double> source_;
   };

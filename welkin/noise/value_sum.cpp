@@ -4,9 +4,8 @@
 namespace welkin::noise {
 namespace {
 
-// In a plane z is a lattice point.
 CellPlace placeOn(const ValueTerm& term, const NoiseParams& params, int axis, double p) {
-  if (axis >= params.dimensions) return {};
+  if (axis >= params.dimensions) return term.beyond;
   const Span span = term.axes[axis].at(p);
   return {span.low, span.inside};
 }

@@ -70,6 +70,17 @@ ValueLine makeValueLine(const ValueSettings& settings, int axis, std::span<const
   return {first, {weight[0], weight[1], weight[2], weight[3]}, listed, index, column};
 }
 
+void setValue(const Value& noise, float weight, ValueTables& out) {
+  const ValueClock& clock = noise.clock();
+  out.settings = noise.settings();
+  out.taps = tapsOf(out.settings.interpolation).count();
+  out.weight = weight;
+  out.clock = clock.taps > 0 ? &clock : nullptr;
+  for (int t = 0; t < 4; ++t)
+    for (int phase = 0; phase < kTimePhases; ++phase)
+      out.timeWeight[t][phase] = static_cast<float>(clock.weight[t][phase]) * kOwnStep;
+}
+
 void makeValueTables(FillJob& job, Scratch& memory) {
   const std::vector<ValueTerm>& terms = job.plan->values;
   const int dimensions = static_cast<int>(job.params->dimensions);
@@ -85,17 +96,17 @@ void makeValueTables(FillJob& job, Scratch& memory) {
     for (std::size_t t = begin; t < end; ++t) {
       const ValueTerm& term = terms[t];
       ValueTables& out = job.values[t];
-      out.settings = term.noise.settings();
-      out.taps = tapsOf(out.settings.interpolation).count();
       const bool folded = job.params->fractal == Fractal::kFbm;
-      out.weight = folded ? static_cast<float>(term.weight) : 1.0f;
+      setValue(term.noise, folded ? static_cast<float>(term.weight) : 1.0f, out);
       for (int axis = 0; axis < 3; ++axis) {
         const auto count = static_cast<std::size_t>(job.box.size[axis]);
         for (std::size_t i = 0; i < count; ++i) {
-          const Span span = axis < dimensions
-                                ? term.axes[axis].at((job.box.first[axis] + static_cast<int>(i) + 0.5) *
-                                                     job.grid.spacing[axis])
-                                : Span{};  // in a plane z is a lattice point
+          if (axis >= dimensions) {
+            places[i] = term.beyond;
+            continue;
+          }
+          const Span span =
+              term.axes[axis].at((job.box.first[axis] + static_cast<int>(i) + 0.5) * job.grid.spacing[axis]);
           places[i] = {span.low, span.inside};
         }
         out.axis[axis] = makeValueLine(out.settings, axis, places.first(count), memory, taking);

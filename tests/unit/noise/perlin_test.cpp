@@ -218,7 +218,7 @@ TEST(Curl, IsFreeOfDivergence) {
 }
 
 TEST(Time, IsContinuousAndRepeatsAfterItsPeriod) {
-  for (const Kind kind : {Kind::kPerlin, Kind::kCellular, Kind::kDistorted})
+  for (const Kind kind : {Kind::kPerlin, Kind::kValue, Kind::kCellular, Kind::kDistorted})
     for (const int dimensions : {2, 3}) {
       NoiseParams p;
       p.kind = kind;
