@@ -69,7 +69,7 @@ constexpr std::array<Habit, 11> kHabits = {{
      .40, 1.2, 90,   220,  .30, .40, 1.5, 60,  .12, .60, .00, .20, .1},
 }};
 
-// Cumulus deeper than it is wide: towers that are broad below and round above.
+// Deep cumulus: towers that are broad below and round above.
 constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .84, .12, .40, .35, 1.0, 1.10, 2.0, -.30, 0,  .05,
                               .06, .42, 250,  1200,  .28, .22, 1.0, 110, .08, .05,  .75, .15,  1.2};
 constexpr double kMediocrisM = 1300.0, kCongestusM = 2400.0;  // depths of either
@@ -156,6 +156,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
       glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
   s.edge = static_cast<float>(habit.edge);
   s.lift = static_cast<float>(habit.lift);
+  // An anvil's underside is the steepest of all.
   const double underAnvil = habit.anvil > 0.0 ? 0.14 * depth / habit.anvil : depth;
   s.reachM = static_cast<float>(std::min({0.08 * cell, 0.25 * depth, underAnvil}));
   return s;
