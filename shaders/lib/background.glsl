@@ -6,6 +6,7 @@
 // the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
 #include "lib/ground.glsl"
+#include "lib/stars.glsl"
 
 uniform vec3 uGroundAlbedo;
 uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
@@ -16,6 +17,10 @@ uniform float uSunRadius;         // rad
 uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
+uniform float uStarlight;         // share of the stars' light that is drawn; 0: none, by day
+uniform mat3 uCelestialFromEnu;
+uniform sampler2D uStars;         // lib/stars.glsl
+uniform int uStarCells;
 #ifdef WELKIN_SKY_BOX
 uniform samplerCube uSkyBox;      // in the place of the clear sky
 uniform mat3 uBoxFromEnu;
@@ -39,10 +44,12 @@ struct Disc {
   float share;  // of luminance that is left
 };
 
+float discCover(float angle, float seen, float pixelRad) { return clamp((seen - angle) / pixelRad + 0.5, 0.0, 1.0); }
+
 Disc discAt(vec3 dir, vec3 centre, float radius, float pixelRad) {
   float seen = max(radius, 0.75 * pixelRad);
   float angle = length(dir - centre);
-  float edge = clamp((seen - angle) / pixelRad + 0.5, 0.0, 1.0);
+  float edge = discCover(angle, seen, pixelRad);
   // A linear edge of width w about radius r holds r^2 + w^2 / 12 times pi.
   float area = (seen * seen + pixelRad * pixelRad / 12.0) / (radius * radius);
   return Disc(min(angle / seen, 1.0), edge / area);
@@ -66,6 +73,17 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   vec3 normal = normalize(across + 1e-9) * disc.x - uMoonDirection * mu;
   float mu0 = max(dot(normal, uSunDirection), 0.0);
   return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+}
+
+// Above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the processor runs both sides of a branch.
+vec3 starsBeyond(vec3 dir, float pixelRad) {
+  vec3 stars = vec3(0.0);
+  int drawn = uStarlight > 0.0 ? 1 : 0;
+  for (int i = 0; i < drawn; ++i) {
+    stars = uStarlight * starLuminance(uStars, uStarCells, uCelestialFromEnu * dir, pixelRad);
+    stars *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
+  }
+  return stars;
 }
 
 vec3 groundLuminance(vec3 dir, float distanceM) {
@@ -101,17 +119,18 @@ vec3 skyLuminance(vec3 dir) {
   return sky;
 }
 
+vec3 throughAtmosphere(vec3 dir, vec3 sky, vec3 beyond) {
+  if (beyond.x + beyond.y <= 0.0) return sky;
+  return sky + beyond * atmosphereTransmittance(uAtmosphere, uTransmittance, uEyeM + uGroundAltitudeM, dir.z);
+}
+
 vec3 backgroundLuminance(vec3 dir, float groundM, float pixelRad) {
 #ifdef WELKIN_SKY_BOX
   if (groundM >= 1e8 || uBoxGround < 0.5)
     return uBoxScale * textureLod(uSkyBox, uBoxFromEnu * dir, log2(max(uBoxTexelsPerRad * pixelRad, 1.0))).xyz;
 #endif
   if (groundM < 1e8) return groundThroughAir(dir, groundM);
-  vec3 sky = skyLuminance(dir);
-  if (uDiscs > 0.5) {
-    vec3 disc = sunDisc(dir, pixelRad) + moonDisc(dir, pixelRad);
-    if (disc.x + disc.y > 0.0)
-      sky += disc * atmosphereTransmittance(uAtmosphere, uTransmittance, uEyeM + uGroundAltitudeM, dir.z);
-  }
-  return sky;
+  vec3 sky = skyLuminance(dir), beyond = starsBeyond(dir, pixelRad);
+  if (uDiscs > 0.5) beyond += sunDisc(dir, pixelRad) + moonDisc(dir, pixelRad);
+  return throughAtmosphere(dir, sky, beyond);
 }

@@ -54,7 +54,7 @@ void main() {
   airShadows = textureLod(uAirShadows, px / (uAirShadowsPx * vec2(textureSize(uAirShadows, 0))), 0.0);
 #endif
 #if WELKIN_BACKDROP == 1
-  vec3 luminance = skyLuminance(dir);
+  vec3 luminance = throughAtmosphere(dir, skyLuminance(dir), starsBeyond(dir, uPixelRad));
 #elif WELKIN_BACKDROP == 2
   vec3 luminance = groundThroughAir(dir, groundDistance(dir));
 #else

@@ -5,7 +5,7 @@
 // The shared subset: float literals with an f suffix; functions marked WELKIN_FN; out parameters as
 // WELKIN_OUT(type) and WELKIN_INOUT(type); constants as WELKIN_CONST float kName = ...; no swizzles (write
 // p.x, vec2(p.x, p.y), vec3(v4)); no arrays of opaque types; textures are read with textureLod(s, uv, 0.0f)
-// only; structs of float, int, vec2, vec3, vec4. The GLSL side of the same macros stands in
+// or texelFetch(s, xy, 0) only; structs of float, int, vec2, vec3, vec4. The GLSL side of the same macros stands in
 // shaders/lib/prelude.glsl.
 //
 // Include such a file once in a .cpp:
@@ -112,6 +112,10 @@ inline vec4 textureLod(const sampler2D& s, vec2 uv, float) {
   const vec4 a = mix(texel(tx.i0, ty.i0), texel(tx.i1, ty.i0), tx.w);
   const vec4 b = mix(texel(tx.i0, ty.i1), texel(tx.i1, ty.i1), tx.w);
   return mix(a, b, ty.w);
+}
+
+inline vec4 texelFetch(const sampler2D& s, ivec2 at, int) {
+  return detail::load(&s.image->data[s.image->index(at.x, at.y)], s.image->channels);
 }
 
 inline vec4 textureLod(const sampler3D& s, vec3 uvw, float) {

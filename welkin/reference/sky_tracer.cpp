@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <glm/exponential.hpp>
+#include <glm/matrix.hpp>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "welkin/reference/sky_lights.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
+#include "welkin/sky/star_cells.h"
 
 namespace welkin::reference {
 namespace {
@@ -28,6 +30,8 @@ using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 // Keeps the order of the two apart.
 #include "shaders/lib/ground.glsl"
+// Nor of these.
+#include "shaders/lib/stars.glsl"
 }  // namespace shared
 
 // A path whose throughput is below the one goes on with a chance, and with the other.
@@ -97,7 +101,14 @@ struct SkyTracer::Impl {
         isotropic(PhaseSampler::henyeyGreenstein(0.0)),
         peak(dropletPeak(droplets)),
         airglow(s.atmosphere->uniforms().airglow),
-        airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM) {}
+        airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM),
+        starlight(s.scene.output.stars ? sky::starlightShare(s.ephemeris.sun.elevationDeg) : 0.0f),
+        celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)) {
+    glm::vec3 middle(0.0f);
+    float pixelRad = 0.0f;
+    scene::directionAt(projector, 0.5f * projector.sizePx, middle, pixelRad);
+    if (starlight > 0.0f) stars = sky::starCells(sky::starLights(s.scene.time), sky::starLevel(pixelRad));
+  }
 
   const scene::SkyState state;
   std::uint64_t seed;
@@ -111,6 +122,19 @@ struct SkyTracer::Impl {
   PhaseSampler peak;  // of the droplets: see gather()
   glm::dvec3 airglow;
   double airglowHeight;
+  float starlight;  // share that is drawn
+  glm::dmat3 celestialFromEnu;
+  sky::StarCells stars;
+
+  // Above the air, behind the moon.
+  glm::dvec3 starsBeyond(const glm::dvec3& way, bool discs, float pixelRad) const {
+    const sky::Body& moon = state.ephemeris.moon;
+    if (discs && glm::length(way - moon.direction) < moon.angularRadiusRad) return glm::dvec3(0.0);
+    const shared::sampler2D texels{&stars.texels, shared::Wrap::kClamp, shared::Wrap::kClamp};
+    return static_cast<double>(starlight) *
+           glm::dvec3(shared::starLuminance(texels, stars.cells,
+                                                        glm::vec3(celestialFromEnu * way), pixelRad));
+  }
 
   // A path on its way to its next event.
   struct Path {
@@ -124,7 +148,7 @@ struct SkyTracer::Impl {
     SkySample sample;
   };
 
-  SkySample traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs) const;
+  SkySample traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs, float pixelRad) const;
   void follow(Path path, Work& work) const;
 
   double end(const Ray& ray) const {  // of a ray's way through air and clouds
@@ -335,12 +359,14 @@ void SkyTracer::Impl::follow(Path path, Work& work) const {
   }
 }
 
-SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs) const {
+SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs,
+                                       float pixelRad) const {
   Work work{Random(seedOfPath), {}};
   Ray ray{{0.0, 0.0, state.scene.camera.eyeM}, way};
   double near = 0.0, far = 0.0;
   glm::dvec3 onDisc(0.0);
   if (discs && !meetsGround(ray)) onDisc = lights.discs(way);
+  if (starlight > 0.0f && pixelRad > 0.0f && !meetsGround(ray)) onDisc += starsBeyond(way, discs, pixelRad);
   if (!earth.crossings(ray, air.topM(), near, far) || far <= 0.0) {
     work.sample.luminance = onDisc;
     return work.sample;
@@ -397,12 +423,12 @@ SkySample SkyTracer::trace(int x, int y, std::uint64_t index) const {
   const glm::vec2 px(static_cast<float>(x + unit(random)), static_cast<float>(y + unit(random)));
   if (!scene::directionAt(impl_->projector, px, direction, pixelRad)) return {};
   return impl_->traceFrom(glm::normalize(glm::dvec3(direction)), random.next(),
-                          impl_->state.scene.output.sunDisc);
+                          impl_->state.scene.output.sunDisc, pixelRad);
 }
 
 SkySample SkyTracer::traceDirection(const glm::dvec3& direction, std::uint64_t index) const {
   return impl_->traceFrom(glm::normalize(direction), hashOf(impl_->seed, std::uint64_t{0x5d1a}, index),
-                          impl_->state.scene.output.sunDisc);
+                          impl_->state.scene.output.sunDisc, 0.0f);
 }
 
 }  // namespace welkin::reference

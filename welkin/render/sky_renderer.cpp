@@ -22,6 +22,7 @@
 #include "welkin/render/sky_sheets.h"
 #include "welkin/render/sky_splats.h"
 #include "welkin/render/sky_textures.h"
+#include "welkin/scene/projector.h"
 #include "welkin/shading/ball_volume.h"
 #include "welkin/shading/fluence_layout.h"
 #include "welkin/shading/lens_flare.h"
@@ -53,6 +54,15 @@ std::vector<gpu::Tile> rowBands(int width, int height) {
   return bands;
 }
 
+// Of the middle of the picture: the largest there are.
+float pixelRadOf(const scene::SkyState& state) {
+  const scene::Projector projector = scene::projectorOf(state);
+  glm::vec3 direction(0.0f);
+  float pixelRad = 0.0f;
+  scene::directionAt(projector, 0.5f * projector.sizePx, direction, pixelRad);
+  return pixelRad;
+}
+
 }  // namespace
 
 struct SkyRenderer::Impl {
@@ -77,7 +87,7 @@ struct SkyRenderer::Impl {
   Picture draw(const scene::SkyState& state, const Progress& progress);
   gpu::Program& programFor(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
                            const shading::MarchSettings& settings, bool transmittance);
-  void bind(gpu::Program& program);
+  void bind(gpu::Program& program, const scene::SkyState& state);
   float sunArriving(const scene::SkyState& state, const shading::LightVolumeLayout& layout);
   void addFlare(const scene::SkyState& state, const shading::LightVolumeLayout& layout,
                 Image<float>& picture);
@@ -145,9 +155,10 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   return p;
 }
 
-void SkyRenderer::Impl::bind(gpu::Program& p) {
+void SkyRenderer::Impl::bind(gpu::Program& p, const scene::SkyState& state) {
   clouds->bind(p);
   tables.bind(p);
+  tables.bindStars(p, state, pixelRadOf(state));
   p.bind("uLightVolume", lightVolume.volume());
   p.bind("uFluence", lightVolume.fluence());
   sheets.bind(p);
@@ -180,7 +191,7 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   if ((!sheets.empty() || !splats.empty()) && layout.bands.empty()) settings.noise = 1e-4f;
   gpu::Program& p = programFor(state, layout, settings, false);
   setUniforms(p, shading::projectorUniforms(state));
-  bind(p);
+  bind(p, state);
   done("compile");
 
   if (sum.width() != width || sum.height() != height)
@@ -234,7 +245,7 @@ float SkyRenderer::Impl::sunArriving(const scene::SkyState& state, const shading
   // No picture shows the disc's grain, but steps as wide as in the picture would miss its thin clouds.
   gpu::Program& p = programFor(toSun, layout, shading::marchSettings(scene::Quality::kHigh), true);
   setUniforms(p, shading::projectorUniforms(toSun));
-  bind(p);
+  bind(p, toSun);
   const gpu::Texture2D texture(kSide, kSide, {.format = gpu::Format::kRgba32F});
   const gpu::Framebuffer target(texture);
   target.clear();

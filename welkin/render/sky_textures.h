@@ -11,6 +11,7 @@
 #include "welkin/gpu/texture.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/sky/atmosphere.h"
+#include "welkin/sky/star_cells.h"
 
 namespace welkin::render {
 
@@ -28,6 +29,9 @@ class SkyTextures {
   void updateLive(scene::SkyState& state);
   // Binds those that the program asks for.
   void bind(const gpu::Program& program) const;
+  // And the stars, for pictures with pixels of the given size; those of a place in its size's class are made
+  // when they are first asked for, and kept while the scene's time is the same.
+  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad);
 
  private:
   struct KeyName {
@@ -66,6 +70,13 @@ class SkyTextures {
   gpu::Texture3D inscatter_, through_;
   std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of
   gpu::Texture2D mieDroplets_;
+  struct Stars {
+    gpu::Texture2D texture;
+    int cells = 0;
+  };
+  std::array<Stars, sky::kStarLevels> stars_;  // by level; of the time
+  std::optional<UtcTime> starsTime_;
+  gpu::Texture2D noStars_;
 };
 
 }  // namespace welkin::render

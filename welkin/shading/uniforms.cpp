@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <string_view>
 
 #include "welkin/core/units.h"
@@ -10,6 +11,7 @@
 #include "welkin/optics/phase.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
+#include "welkin/sky/star_cells.h"
 
 namespace welkin::shading {
 namespace {
@@ -132,6 +134,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
     return light.illuminance / static_cast<float>(kPi * radius * radius * std::max(share, 0.005));
   };
   u.put("", "uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
+  u.put("", "uStarlight", s.output.stars ? sky::starlightShare(e.sun.elevationDeg) : 0.0f);
+  u.put("", "uCelestialFromEnu", glm::mat3(glm::transpose(e.enuFromCelestial)));
   u.put("", "uSunDirection", sun.direction);
   u.put("", "uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
   u.put("", "uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "welkin/core/units.h"
 
@@ -144,18 +145,21 @@ Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
                cosLat = std::cos(radians(observer.latitudeDeg));
   const double sinLon = std::sin(radians(observer.longitudeDeg)),
                cosLon = std::cos(radians(observer.longitudeDeg));
-  auto enuFromCelestial = [&](const glm::dvec3& gcrsM) {
-    const double in[3] = {gcrsM.x, gcrsM.y, gcrsM.z};
-    double p[3];
-    eraRxp(terrestrialFromCelestial, const_cast<double*>(in), p);
-    for (int i = 0; i < 3; ++i) p[i] -= site[i];
-    return glm::dvec3(-sinLon * p[0] + cosLon * p[1],
-                      -sinLat * cosLon * p[0] - sinLat * sinLon * p[1] + cosLat * p[2],
-                      cosLat * cosLon * p[0] + cosLat * sinLon * p[1] + sinLat * p[2]);
+  const glm::dmat3 enuFromTerrestrial =
+      glm::transpose(glm::dmat3(glm::dvec3(-sinLon, cosLon, 0.0),
+                                glm::dvec3(-sinLat * cosLon, -sinLat * sinLon, cosLat),
+                                glm::dvec3(cosLat * cosLon, cosLat * sinLon, sinLat)));
+  glm::dmat3 rotation;  // ERFA's matrices are rows of columns, glm's columns of rows
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      rotation[column][row] = terrestrialFromCelestial[row][column];
+  auto topocentric = [&](const glm::dvec3& gcrsM) {
+    return enuFromTerrestrial * (rotation * gcrsM - toVec(site));
   };
-  const glm::dvec3 sunM = enuFromCelestial(sunGcrsM), moonM = enuFromCelestial(moonGcrsM);
+  const glm::dvec3 sunM = topocentric(sunGcrsM), moonM = topocentric(moonGcrsM);
 
   Ephemeris e;
+  e.enuFromCelestial = enuFromTerrestrial * rotation;
   e.sun = bodyAt(sunM, kSunRadiusM);
   e.moon = bodyAt(moonM, kMoonRadiusM);
   const double cosPhase = glm::dot(glm::normalize(-moonM), glm::normalize(sunM - moonM));

@@ -3,6 +3,7 @@
 // matters: up to 1 degree).
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "welkin/core/utc_time.h"
@@ -30,6 +31,7 @@ struct Ephemeris {
   double moonPhaseAngleRad = 0.0;        // sun-moon-observer; 0 full, pi new
   double moonIlluminanceLux = 0.0;       // above the atmosphere, facing the moon
   double sunIlluminanceLux = 0.0;        // above the atmosphere, facing the sun
+  glm::dmat3 enuFromCelestial{1.0};      // directions from the celestial system (GCRS) to east-north-up
 };
 
 Ephemeris ephemeris(const UtcTime& time, const Observer& observer);
