@@ -5,8 +5,8 @@
 // The shared subset: float literals with an f suffix; functions marked WELKIN_FN; out parameters as
 // WELKIN_OUT(type) and WELKIN_INOUT(type); constants as WELKIN_CONST float kName = ...; no swizzles (write
 // p.x, vec2(p.x, p.y), vec3(v4)); no arrays of opaque types; textures are read with textureLod(s, uv, 0.0f)
-// or texelFetch(s, xy, 0) only; structs of float, int, vec2, vec3, vec4. The GLSL side of the same macros stands in
-// shaders/lib/prelude.glsl.
+// or texelFetch(s, xy, 0) only; structs of float, int, vec2, vec3, vec4. The GLSL side of the same macros
+// stands in shaders/lib/prelude.glsl.
 //
 // Include such a file once in a .cpp:
 //   namespace { using namespace welkin::glsl;

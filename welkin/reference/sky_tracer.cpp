@@ -132,8 +132,8 @@ struct SkyTracer::Impl {
     if (discs && glm::length(way - moon.direction) < moon.angularRadiusRad) return glm::dvec3(0.0);
     const shared::sampler2D texels{&stars.texels, shared::Wrap::kClamp, shared::Wrap::kClamp};
     return static_cast<double>(starlight) *
-           glm::dvec3(shared::starLuminance(texels, stars.cells,
-                                                        glm::vec3(celestialFromEnu * way), pixelRad));
+           glm::dvec3(
+               shared::starLuminance(texels, stars.cells, glm::vec3(celestialFromEnu * way), pixelRad));
   }
 
   // A path on its way to its next event.
@@ -360,7 +360,7 @@ void SkyTracer::Impl::follow(Path path, Work& work) const {
 }
 
 SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOfPath, bool discs,
-                                       float pixelRad) const {
+                                     float pixelRad) const {
   Work work{Random(seedOfPath), {}};
   Ray ray{{0.0, 0.0, state.scene.camera.eyeM}, way};
   double near = 0.0, far = 0.0;

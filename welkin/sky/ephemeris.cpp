@@ -145,14 +145,12 @@ Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
                cosLat = std::cos(radians(observer.latitudeDeg));
   const double sinLon = std::sin(radians(observer.longitudeDeg)),
                cosLon = std::cos(radians(observer.longitudeDeg));
-  const glm::dmat3 enuFromTerrestrial =
-      glm::transpose(glm::dmat3(glm::dvec3(-sinLon, cosLon, 0.0),
-                                glm::dvec3(-sinLat * cosLon, -sinLat * sinLon, cosLat),
-                                glm::dvec3(cosLat * cosLon, cosLat * sinLon, sinLat)));
+  const glm::dmat3 enuFromTerrestrial = glm::transpose(
+      glm::dmat3(glm::dvec3(-sinLon, cosLon, 0.0), glm::dvec3(-sinLat * cosLon, -sinLat * sinLon, cosLat),
+                 glm::dvec3(cosLat * cosLon, cosLat * sinLon, sinLat)));
   glm::dmat3 rotation;  // ERFA's matrices are rows of columns, glm's columns of rows
   for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column)
-      rotation[column][row] = terrestrialFromCelestial[row][column];
+    for (int column = 0; column < 3; ++column) rotation[column][row] = terrestrialFromCelestial[row][column];
   auto topocentric = [&](const glm::dvec3& gcrsM) {
     return enuFromTerrestrial * (rotation * gcrsM - toVec(site));
   };

@@ -21,8 +21,8 @@ using namespace welkin::glsl;
 
 constexpr double kFinestPixelRad = shared::kWidestPixelRad / (1 << (kStarLevels - 1));
 constexpr float kSpotPx = 1.75f;  // radius; its sum over pixels is within 2 % wherever their centres lie
-constexpr double kHaloBelow = 4.0;
-constexpr float kHaloShare = 0.06f, kHaloGrowth = 0.35f;  // of the radius a magnitude; chosen by eye
+constexpr double kHaloBelow = 4.5;
+constexpr float kHaloShare = 0.1f, kHaloGrowth = 0.33f;  // of the radius a magnitude; chosen by eye
 
 struct Spot {
   glm::dvec3 direction;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stars sorted for pictures that look them up by direction: the texture of shaders/lib/stars.glsl.
 //
-// Every star is a round spot 3.5 pixels wide, of which half stands out. Those brighter than V = 4 send a
+// Every star is a round spot 3.5 pixels wide, of which half stands out. Those brighter than V = 4.5 send a
 // share of their light into a wider one, as lenses and eyes do: where a pixel cannot become whiter, bright
 // stars are larger.
 #pragma once

@@ -42,11 +42,10 @@ glm::vec3 blackBodyColour(double temperatureK) {
                    : k < 4000.0 ? ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
                                 : ((3.0817580 * x - 5.87338670) * x + 3.75112997) * x - 0.37001483;
   const double bigX = x / y, bigZ = (1.0 - x - y) / y;
-  const glm::dvec3 rgb =
-      glm::max(glm::dvec3(3.2404542 * bigX - 1.5371385 - 0.4985314 * bigZ,
-                          -0.9692660 * bigX + 1.8760108 + 0.0415560 * bigZ,
-                          0.0556434 * bigX - 0.2040259 + 1.0572252 * bigZ),
-               glm::dvec3(0.0));
+  const glm::dvec3 rgb = glm::max(glm::dvec3(3.2404542 * bigX - 1.5371385 - 0.4985314 * bigZ,
+                                             -0.9692660 * bigX + 1.8760108 + 0.0415560 * bigZ,
+                                             0.0556434 * bigX - 0.2040259 + 1.0572252 * bigZ),
+                                  glm::dvec3(0.0));
   return glm::vec3(rgb / glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)));
 }
 
@@ -67,9 +66,9 @@ std::vector<StarLight> starLights(const UtcTime& time) {
     const double ra = radians(1e-4 * star.rightAscension), dec = radians(1e-4 * star.declination);
     const glm::dvec3 direction(std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec));
     const glm::dvec3 east(-std::sin(ra), std::cos(ra), 0.0), north = glm::cross(direction, east);
-    const glm::dvec3 moved = years * ERFA_DMAS2R *
-                             (static_cast<double>(star.motionEast) * east +
-                              static_cast<double>(star.motionNorth) * north);
+    const glm::dvec3 moved =
+        years * ERFA_DMAS2R *
+        (static_cast<double>(star.motionEast) * east + static_cast<double>(star.motionNorth) * north);
     StarLight light;
     light.direction = glm::normalize(glm::normalize(direction + moved) + velocity);
     light.magnitude = 0.01 * star.magnitude;

@@ -13,9 +13,9 @@ namespace welkin::sky {
 
 // As catalogued: ESA 1997, "The Hipparcos and Tycho Catalogues", ESA SP-1200.
 struct CatalogueStar {
-  int rightAscension = 0, declination = 0;      // 1e-4 degrees, J2000
-  int motionEast = 0, motionNorth = 0;          // mas a year
-  int magnitude = 0, colour = 0;                // V and B-V, hundredths
+  int rightAscension = 0, declination = 0;  // 1e-4 degrees, J2000
+  int motionEast = 0, motionNorth = 0;      // mas a year
+  int magnitude = 0, colour = 0;            // V and B-V, hundredths
 };
 // All to V = 6.5, the brightest first.
 std::span<const CatalogueStar> starCatalogue();

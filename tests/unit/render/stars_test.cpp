@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stars in pictures: their light whatever the projection and the pixels, and what hides them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "tests/testing/skies.h"
+#include "welkin/core/colour.h"
+#include "welkin/core/units.h"
+#include "welkin/reference/sky_tracer.h"
+#include "welkin/render/sky_renderer.h"
+#include "welkin/scene/projector.h"
+#include "welkin/sky/stars.h"
+
+namespace welkin::render {
+namespace {
+
+using namespace welkin::testing;
+using scene::Projection;
+
+Image<float> drawn(const scene::SkyState& state) {
+  static SkyRenderer renderer;
+  return renderer.draw(state).luminance;
+}
+
+// Of a pixel at its middle; 0 outside the picture's circle. Directions are smooth, so differences serve.
+double solidAngle(const scene::Projector& p, int x, int y) {
+  const auto at = [&](float dx, float dy) {
+    glm::vec3 dir(0.0f);
+    float pixelRad = 0.0f;
+    const glm::vec2 px(static_cast<float>(x) + 0.5f + dx, static_cast<float>(y) + 0.5f + dy);
+    const bool inside = scene::directionAt(p, px, dir, pixelRad);
+    return std::pair{glm::dvec3(dir), inside};
+  };
+  if (!at(0, 0).second) return 0.0;
+  return glm::length(
+      glm::cross(at(0.5f, 0).first - at(-0.5f, 0).first, at(0, 0.5f).first - at(0, -0.5f).first));
+}
+
+template <class Luminance>
+double lightIn(const scene::SkyState& state, const Luminance& luminance) {
+  const scene::Projector p = scene::projectorOf(state);
+  double sum = 0.0;
+  for (int y = 0; y < static_cast<int>(p.sizePx.y); ++y)
+    for (int x = 0; x < static_cast<int>(p.sizePx.x); ++x) sum += luminance(x, y) * solidAngle(p, x, y);
+  return sum;
+}
+double lightIn(const scene::SkyState& state) {
+  const Image<float> picture = drawn(state);
+  return lightIn(state, [&](int x, int y) { return luminanceOf(&picture.data[picture.index(x, y)]); });
+}
+
+// Illuminance of the stars whose directions pass.
+template <class Passes>
+double starlight(const scene::SkyState& state, const Passes& passes) {
+  double sum = 0.0;
+  for (const sky::StarLight& star : sky::starLights(state.scene.time)) {
+    const glm::dvec3 enu = state.ephemeris.enuFromCelestial * star.direction;
+    if (enu.z > 0.0 && passes(enu)) sum += luminanceOf(&star.illuminance.x);
+  }
+  return sum;
+}
+
+// Nothing but stars.
+scene::SkyState starsAlone(const scene::Scene& s) {
+  return airlessSky(s, 0.0);
+}
+
+TEST(StarPictures, OfTheWholeSkyHoldAllLight) {
+  for (const int height : {512, 128, 32}) {
+    const scene::SkyState state =
+        starsAlone(projected(moonlessScene(), Projection::kEquirect, 2 * height, height));
+    const double expected = starlight(state, [](const glm::dvec3&) { return true; });
+    EXPECT_NEAR(lightIn(state) / expected, 1.0, 0.04) << height;
+  }
+  for (const int size : {512, 96}) {
+    const scene::SkyState state = starsAlone(projected(moonlessScene(), Projection::kFisheye, size, size));
+    const double expected = starlight(state, [](const glm::dvec3&) { return true; });
+    EXPECT_NEAR(lightIn(state) / expected, 1.0, 0.04) << size;
+  }
+}
+
+TEST(StarPictures, InPerspectiveHoldTheLightInTheirFrame) {
+  for (const int width : {960, 160, 48}) {
+    const scene::SkyState state =
+        starsAlone(looking(sized(moonlessScene(), width, width / 2), 180.0, 50.0, 80.0));
+    const scene::Projector p = scene::projectorOf(state);
+    const double tangent = p.halfWidthTan;
+    const double expected = starlight(state, [&](const glm::dvec3& enu) {
+      const glm::dvec3 c = glm::transpose(glm::dmat3(p.enuFromCamera)) * enu;
+      return c.y > 0.0 && std::abs(c.x / c.y) < tangent && std::abs(c.z / c.y) < 0.5 * tangent;
+    });
+    EXPECT_NEAR(lightIn(state) / expected, 1.0, 0.04) << width;
+  }
+}
+
+TEST(StarPictures, OfTheReferenceRendererHoldTheSameLight) {
+  const scene::SkyState state = starsAlone(projected(moonlessScene(), Projection::kFisheye, 96, 96));
+  const reference::SkyTracer tracer(state, {});
+  const double traced = lightIn(state, [&](int x, int y) {
+    double sum = 0.0;
+    for (std::uint64_t i = 0; i < 8; ++i) {
+      const glm::vec3 l(tracer.trace(x, y, i).luminance);
+      sum += luminanceOf(&l.x) / 8.0;
+    }
+    return sum;
+  });
+  EXPECT_NEAR(traced / lightIn(state), 1.0, 0.04);
+}
+
+TEST(StarPictures, TheMoonHidesStars) {
+  scene::SkyState state = starsAlone(looking(sized(moonlessScene(), 96, 96), 180.0, 50.0, 16.0));
+  const double open = lightIn(state);
+  ASSERT_GT(open, 1e-8);
+  state.scene.output.sunDisc = true;
+  state.ephemeris.moonIlluminanceLux = 0.0;  // a dark and large one
+  state.ephemeris.moon.direction = glm::dvec3(0.0, -std::cos(radians(50.0)), std::sin(radians(50.0)));
+  state.ephemeris.moon.angularRadiusRad = radians(15.0);
+  EXPECT_LT(lightIn(state), 1e-6 * open);
+}
+
+TEST(StarPictures, CloudsHideStarsAndTheSwitchTakesThemAway) {
+  const auto added = [](scene::Scene s) {
+    s = looking(sized(s, 96, 54), 180.0, 50.0, 70.0);
+    const scene::SkyState with = scene::buildSky(s, 0.0);
+    scene::SkyState without = with;
+    without.scene.output.stars = false;
+    return lightIn(with) - lightIn(without);
+  };
+  const double clear = added(clearScene(-30.0));
+  EXPECT_GT(clear, 1e-7);
+  EXPECT_LT(std::abs(added(cloudyScene(-30.0, {weather::Genus::kNimbostratus}, 8.0))), 0.01 * clear);
+}
+
+TEST(StarPictures, HaveNoneByDay) {
+  scene::SkyState state = scene::buildSky(sized(clearScene(20.0), 64, 36), 0.0);
+  const Image<float> with = drawn(state);
+  state.scene.output.stars = false;
+  EXPECT_EQ(with.data, drawn(state).data);
+}
+
+// Where the stars begin to be drawn, none is seen.
+TEST(StarPictures, DoNotShowAtSunset) {
+  scene::SkyState state = scene::buildSky(looking(sized(clearScene(0.0), 320, 180), 90.0, 40.0), 0.0);
+  const Image<float> with = drawn(state);
+  state.scene.output.stars = false;
+  const Image<float> without = drawn(state);
+  for (std::size_t i = 0; i < with.data.size(); ++i)
+    ASSERT_NEAR(with.data[i] / without.data[i], 1.0f, 0.003f) << i;
+}
+
+TEST(StarPictures, AreExposedAsWithoutStars) {
+  SkyRenderer renderer;
+  scene::SkyState state = scene::buildSky(looking(sized(moonlessScene(), 640, 360), 180.0, 40.0), 0.0);
+  const double with = renderer.draw(state).autoExposureEv;
+  state.scene.output.stars = false;
+  EXPECT_NEAR(with, renderer.draw(state).autoExposureEv, 0.1);
+}
+
+}  // namespace
+}  // namespace welkin::render
