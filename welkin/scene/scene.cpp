@@ -52,7 +52,8 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
       o.sunDisc);
-  v.value({"stars", "", "draw the stars, when the sun is down"}, o.stars);
+  v.value({"stars", "", "draw the stars when the sun is down, whatever sun_disc says; a sky box has its own"},
+          o.stars);
   v.value(
       {"flare", "",
        "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; with "
