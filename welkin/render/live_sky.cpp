@@ -249,7 +249,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   p.set("uPixelRad", view.pixelRad);
   p.set("uScale", options.scale);
   tables.bind(p);
-  tables.bindStars(p, *state, view.pixelRad);
+  tables.bindStars(p, *state, view.pixelRad, SkyTextures::StarsMade::kEarly);
   clouds->bind(p);
   std::size_t shadows = 0;
   float mean = 1.0f;

@@ -10,7 +10,8 @@
 // it comes to that within some frames (render/live_volumes.h). The engine's OpenGL state is as it was after
 // every call. After the first two updates of a scene and a draw nothing is compiled, no OpenGL object is made
 // and no memory is allocated, and while time runs on no update takes much longer than others; but a view with
-// many more metaballs in it than any before makes room for them.
+// many more metaballs in it than any before makes room for them, and one with pixels of twice the angle or
+// more may sort the stars anew (sky/star_cells.h), some milliseconds.
 //
 // Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
 // sheets and volumes all of them together have their place by the middle of their heights.

@@ -150,10 +150,12 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uAerialTransmittance", through_);
 }
 
-void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad) {
+void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
+                            StarsMade made) {
   if (!program.has("uStars")) return;
   constexpr gpu::TextureOptions kTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
-  if (!state.scene.output.stars || sky::starlightShare(state.ephemeris.sun.elevationDeg) <= 0.0f) {
+  const bool out = sky::starlightShare(state.ephemeris.sun.elevationDeg) > 0.0f;
+  if (!state.scene.output.stars || (!out && made == StarsMade::kWhenOut)) {
     if (noStars_.id() == 0) noStars_ = gpu::Texture2D(Image<float>(1, 1, 4), kTexels);
     program.bind("uStars", noStars_);  // which nobody reads
     return;
@@ -165,9 +167,9 @@ void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state,
   const int level = sky::starLevel(pixelRad);
   Stars& stars = stars_[static_cast<std::size_t>(level)];
   if (stars.cells == 0) {
-    const sky::StarCells made = sky::starCells(sky::starLights(state.scene.time), level);
-    stars.texture = gpu::Texture2D(made.texels, kTexels);
-    stars.cells = made.cells;
+    const sky::StarCells sorted = sky::starCells(sky::starLights(state.scene.time), level);
+    stars.texture = gpu::Texture2D(sorted.texels, kTexels);
+    stars.cells = sorted.cells;
   }
   program.bind("uStars", stars.texture);
   program.set("uStarCells", stars.cells);

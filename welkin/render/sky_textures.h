@@ -29,9 +29,12 @@ class SkyTextures {
   void updateLive(scene::SkyState& state);
   // Binds those that the program asks for.
   void bind(const gpu::Program& program) const;
-  // And the stars, for pictures with pixels of the given size; those of a place in its size's class are made
-  // when they are first asked for, and kept while the scene's time is the same.
-  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad);
+  // And the stars, for pictures with pixels of the given size. Their texture is made when stars are out, or
+  // early, so that no frame at dusk has to wait for it; again for pixels of another level (sky/star_cells.h),
+  // and for another scene time.
+  enum class StarsMade { kWhenOut, kEarly };
+  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
+                 StarsMade made = StarsMade::kWhenOut);
 
  private:
   struct KeyName {

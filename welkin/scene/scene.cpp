@@ -52,7 +52,7 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
       o.sunDisc);
-  v.value({"stars", "", "draw the stars when the sun is down, whatever sun_disc says; a sky box has its own"},
+  v.value({"stars", "", "draw the stars when the sun is down, whatever sun_disc says; none over a sky box"},
           o.stars);
   v.value(
       {"flare", "",
