@@ -41,7 +41,8 @@ Json layersJson(const scene::SkyState& state) {
               {"technique", techniqueName(scene::techniqueOf(state.scene, l))},
               {"extinction_per_m", l.extinctionPerM},
               {"wind_from_deg", l.windFromDeg},
-              {"wind_speed_mps", l.windSpeedMps}};
+              {"wind_speed_mps", l.windSpeedMps},
+              {"rain_mm_per_h", l.rainMmPerH}};
     j.update(coverJson(i < state.cover.size() ? state.cover[i] : scene::LayerCover{l.oktas, 0.0}));
     layers.push_back(std::move(j));
   }

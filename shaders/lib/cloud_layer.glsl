@@ -31,7 +31,8 @@ struct CloudLayer {
   float shapeM;         // period of the large 3D noise
   float shapeAmount;    // its strength, sd
   float shapeAtBase;    // share of that strength left at the base
-  float shapeStretch;   // drawing-out of the 3D noise along `along`
+  float shapeStretch;   // drawing-out of the 3D noises along `along`
+  float shapeTall;      // the same upwards
   float detailM;        // period of the small 3D noise
   float detailAmount;   // its strength, sd
   vec3 shapeShiftM;     // displacement of the 3D noises relative to the pattern: evolution

@@ -100,7 +100,7 @@ WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, samp
   clearM = 0.0f;
   float h = (q.z - layer.baseM) / (layer.topM - layer.baseM);
   vec2 p = cloudPatternPosition(layer, q, h);
-  vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z);
+  vec3 p3 = vec3(p.x / layer.shapeStretch, p.y, q.z / layer.shapeTall);
   s += cloudShapeAmount(layer, s, h) * textureLod(shapeNoise, (p3 - layer.shapeShiftM) / layer.shapeM, 0.0f).x;
   float bound = s + 2.0f * layer.detailAmount;
   if (bound <= 0.0f) {
@@ -123,8 +123,8 @@ WELKIN_FN float cloudExtinction(CloudLayer layer, sampler2D placement, sampler3D
 }
 
 // The longest step that resolves a layer: a share of its depth and of its mean free path; and of deep layers, whose forms are large, a
-// small share of the depth whatever the path.
+// small share of the depth whatever the path. Light changes slowly in what is drawn out upwards.
 WELKIN_FN float cloudStepM(CloudLayer layer) {
   float depth = layer.topM - layer.baseM;
-  return max(min(0.25f / layer.extinction, 0.07f * depth), 0.006f * depth);
+  return sqrt(layer.shapeTall) * max(min(0.25f / layer.extinction, 0.07f * depth), 0.006f * depth);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stars as spots a few pixels wide, found by direction. Plain mathematics.
 //
-// The texture (welkin/shading/star_cells.h) begins with the cells of a cube around the eye, n x n on each face +x -x +y -y +z -z: where the
+// The texture (welkin/sky/star_cells.h) begins with the cells of a cube around the eye, n x n on each face +x -x +y -y +z -z: where the
 // list of a cell begins, and how many spots touch it. A spot is two texels: its direction and its radius in pixels; its illuminance.
 
 WELKIN_CONST int kStarRowBits = 10;        // texels in a row, as a power of two

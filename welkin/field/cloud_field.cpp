@@ -73,8 +73,8 @@ CloudField::CloudField(std::shared_ptr<const CloudNoise> noise, std::vector<Clou
                        double groundAltitudeM)
     : noise_(std::move(noise)), layers_(std::move(layers)), earthRadiusM_(kEarthRadiusM + groundAltitudeM) {
   if (layers_.size() > static_cast<std::size_t>(kMaxLayers))
-    throw ParameterError("a sky has at most " + std::to_string(kMaxLayers) + " layers of cloud, not " +
-                         std::to_string(layers_.size()));
+    throw ParameterError("a sky has at most " + std::to_string(kMaxLayers) +
+                         " layers of cloud and rain, not " + std::to_string(layers_.size()));
 }
 
 float CloudField::extinction(glm::vec3 p) const {

@@ -18,8 +18,9 @@
 
 namespace welkin::field {
 
-// Most layers that a field may have (the renderers' uniform arrays are this long).
-inline constexpr int kMaxLayers = 8;
+// Most layers that a field may have (the renderers' uniform arrays are this long): eight of cloud, two of
+// rain.
+inline constexpr int kMaxLayers = 10;
 
 // The noise that clouds are made of; tileable. Depends on the seed alone.
 struct CloudNoise {

@@ -22,7 +22,8 @@ void forEachMember(const CloudLayer& l, F&& f) {
   f("dome", l.dome), f("domePower", l.domePower), f("belly", l.belly), f("anvil", l.anvil);
   f("bottomSoft", l.bottomSoft), f("topSoft", l.topSoft);
   f("shapeM", l.shapeM), f("shapeAmount", l.shapeAmount), f("shapeAtBase", l.shapeAtBase);
-  f("shapeStretch", l.shapeStretch), f("detailM", l.detailM), f("detailAmount", l.detailAmount);
+  f("shapeStretch", l.shapeStretch), f("shapeTall", l.shapeTall);
+  f("detailM", l.detailM), f("detailAmount", l.detailAmount);
   f("shapeShiftM", l.shapeShiftM), f("detailShiftM", l.detailShiftM);
   f("edge", l.edge), f("lift", l.lift), f("reachM", l.reachM);
 }

@@ -165,7 +165,8 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   bool clear = s.low + 2.5f * amounts.low + 2.0f * l.detailAmount <= slack;  // somewhere, maybe
 
   // cloudExtinctionFrom.
-  const Interval qx = 1.0f / l.shapeStretch * p.x, qy = p.y, qz{box.low.z, box.high.z};
+  const Interval qx = 1.0f / l.shapeStretch * p.x, qy = p.y,
+                 qz = 1.0f / l.shapeTall * Interval{box.low.z, box.high.z};
   auto over = [&](const TexelExtremes& noise, const field::vec3& shift, float period) {
     return noise.over(
         {(qx.low - shift.x) / period, (qy.low - shift.y) / period, (qz.low - shift.z) / period},

@@ -83,7 +83,7 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     for (const int i : layers_) {
       const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
       if (l.baseM < edges_[k + 1] + kMarginM && l.topM > edges_[k] - kMarginM)
-        slice.layers |= static_cast<std::uint8_t>(1u << i);
+        slice.layers |= static_cast<std::uint16_t>(1u << i);
     }
     slices_.push_back(slice);
   }
@@ -171,7 +171,7 @@ MajorantGrid::Cell MajorantGrid::at(glm::vec3 q) const {
   constexpr float kFar = 1e9f;
   if (!tile) return {{}, 0, {glm::vec3(-kFar), glm::vec3(kFar)}};
   const glm::ivec3 i = brickAt(*tile, q);
-  const std::uint8_t layers = slices_[static_cast<std::size_t>(i.z)].layers;
+  const std::uint16_t layers = slices_[static_cast<std::size_t>(i.z)].layers;
   const Bounds bounds = boundsOf(brickCode(*tile, i));
   if (bounds.majorant - bounds.minorant <= tile->needless) return {bounds, layers, brickBox(*tile, i)};
   const Brick brick = brickOf(*tile, i);

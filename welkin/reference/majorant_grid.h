@@ -90,7 +90,7 @@ class MajorantGrid {
   // What holds all over a box; layers: that may reach into its slice, bit i for the field's layer i.
   struct Cell {
     Bounds bounds;
-    std::uint8_t layers = 0;
+    std::uint16_t layers = 0;
     CloudBox box;
   };
   // The smallest cell at q, which is within lowM() and highM(); else the answer is of the nearest slice.
@@ -117,7 +117,7 @@ class MajorantGrid {
     int voxelsHigh = 1;
     float voxelM = 0.0f, voxelsPerM = 0.0f;  // of height
     std::uint32_t lines = 0;                 // of the voxels of a brick
-    std::uint8_t layers = 0;
+    std::uint16_t layers = 0;
   };
   struct Free {
     void operator()(void* p) const { std::free(p); }

@@ -19,6 +19,7 @@
 #include "welkin/reference/sky_lights.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/sky/star_cells.h"
 
 namespace welkin::reference {
@@ -61,8 +62,9 @@ std::vector<int> tracedLayers(const scene::SkyState& state) {
     if (scene::isSheet(state.scene, state.weather.layers[i]))
       throw ParameterError(who + "layers drawn as thin sheets (layer " + std::to_string(i + 1) +
                            "); expected the technique volume, or the renderer gpu");
-    if (!scene::isMetaballs(state.scene, state.weather.layers[i])) layers.push_back(static_cast<int>(i));
   }
+  for (std::size_t i = 0; i < state.clouds->layers().size(); ++i)
+    if (scene::isVolumeInField(state.scene, state.weather, i)) layers.push_back(static_cast<int>(i));
   return layers;
 }
 
@@ -77,8 +79,8 @@ MetaballMedium tracedMetaballs(const scene::SkyState& state) {
 
 std::vector<bool> iceOf(const scene::SkyState& state) {
   std::vector<bool> ice;
-  ice.reserve(state.weather.layers.size());
-  for (const weather::Layer& layer : state.weather.layers) ice.push_back(scene::isIce(layer.genus));
+  for (std::size_t i = 0; i < state.clouds->layers().size(); ++i)
+    ice.push_back(scene::isIceInField(state.scene, state.weather, i));
   return ice;
 }
 

@@ -15,6 +15,7 @@
 #include "welkin/field/cover.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/metaballs.h"
+#include "welkin/scene/rain_shafts.h"
 
 namespace welkin::scene {
 namespace {
@@ -112,15 +113,27 @@ field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
   return shape;
 }
 
+// Those of the weather, then what rain falls from them.
+void layersAt(const Scene& scene, const weather::Weather& weather,
+              const std::vector<LayerCalibration>& calibration, double secondsAfter,
+              std::span<field::CloudLayer> layers) {
+  const std::size_t own = weather.layers.size();
+  for (std::size_t i = 0; i < own; ++i)
+    layers[i] = layerAt(scene, weather.layers[i], calibration[i], secondsAfter);
+  const RainingLayers raining = rainingLayers(scene, weather);
+  for (std::size_t k = 0; k < raining.count; ++k) {
+    const std::size_t i = raining.of[k];
+    layers[own + k] = shaftBeneath(weather, weather.layers[i], layers[i], secondsAfter);
+  }
+}
+
 }  // namespace
 
 field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
                            const std::vector<LayerCalibration>& calibration,
                            std::shared_ptr<const field::CloudNoise> noise, double secondsAfter) {
-  std::vector<field::CloudLayer> layers;
-  layers.reserve(weather.layers.size());
-  for (std::size_t i = 0; i < weather.layers.size(); ++i)
-    layers.push_back(layerAt(scene, weather.layers[i], calibration[i], secondsAfter));
+  std::vector<field::CloudLayer> layers(weather.layers.size() + rainingLayers(scene, weather).count);
+  layersAt(scene, weather, calibration, secondsAfter, layers);
   return {std::move(noise), std::move(layers), scene.place.altitudeM};
 }
 
@@ -129,8 +142,7 @@ void moveClouds(const Scene& scene, const weather::Weather& weather,
                 field::CloudField& clouds) {
   std::array<field::CloudLayer, field::kMaxLayers> layers;
   const std::size_t count = clouds.layers().size();
-  for (std::size_t i = 0; i < count; ++i)
-    layers[i] = layerAt(scene, weather.layers[i], calibration[i], secondsAfter);
+  layersAt(scene, weather, calibration, secondsAfter, std::span(layers).first(count));
   clouds.setLayers(std::span(layers).first(count));
 }
 

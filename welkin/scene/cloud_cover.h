@@ -43,7 +43,8 @@ struct LayerCalibration {
 std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
                                               const std::shared_ptr<const field::CloudNoise>& noise);
 
-// The clouds `secondsAfter` the scene's time, all layers as if they were volumes.
+// The clouds `secondsAfter` the scene's time, all layers as if they were volumes, then the rain that falls
+// from them (rain_shafts.h).
 field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
                            const std::vector<LayerCalibration>& calibration,
                            std::shared_ptr<const field::CloudNoise> noise, double secondsAfter);

@@ -146,6 +146,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.shapeAmount = static_cast<float>(habit.shapeAmount);
   s.shapeAtBase = static_cast<float>(habit.shapeAtBase);
   s.shapeStretch = static_cast<float>(habit.shapeStretch);
+  s.shapeTall = 1.0f;
   s.detailM = static_cast<float>(5.0 * habit.detailM);
   s.detailAmount = static_cast<float>(habit.detailAmount);
   // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the

@@ -110,7 +110,7 @@ class Descent {
 
 std::vector<VolumeInSky> volumesIn(const scene::SkyState& state) {
   std::vector<VolumeInSky> volumes;
-  const auto layers = state.clouds->layers();
+  const auto layers = state.clouds->layers().first(state.weather.layers.size());  // without rain
   for (std::size_t i = 0; i < layers.size(); ++i) {
     if (scene::isSheet(state.scene, state.weather.layers[i])) continue;
     const field::CloudLayer& layer = layers[i];

@@ -11,6 +11,7 @@
 #include "welkin/optics/phase.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/sky/star_cells.h"
 
 namespace welkin::shading {
@@ -68,8 +69,9 @@ Uniforms cloudUniforms(const scene::SkyState& state) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
                          [&](const char* name, auto value) { u.emplace_back(layerMember(i, name), value); });
-    ice[i] = scene::isIce(state.weather.layers[i].genus) ? 1.0f : 0.0f;
-    cover[i] = static_cast<float>(state.weather.layers[i].oktas / kOktas);
+    const std::size_t of = scene::layerOfField(state.scene, state.weather, i).of;
+    ice[i] = scene::isIceInField(state.scene, state.weather, i) ? 1.0f : 0.0f;
+    cover[i] = static_cast<float>(state.weather.layers[of].oktas / kOktas);
   }
   u.emplace_back("uLayerIce", ice);
   u.emplace_back("uLayerCover", cover);
@@ -78,7 +80,8 @@ Uniforms cloudUniforms(const scene::SkyState& state) {
 
 void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms& uniforms) {
   static constexpr const char* kOwners[] = {"uLayers[0].", "uLayers[1].", "uLayers[2].", "uLayers[3].",
-                                            "uLayers[4].", "uLayers[5].", "uLayers[6].", "uLayers[7]."};
+                                            "uLayers[4].", "uLayers[5].", "uLayers[6].", "uLayers[7].",
+                                            "uLayers[8].", "uLayers[9]."};
   static_assert(std::size(kOwners) == field::kMaxLayers);
   Refill u(uniforms);
   const auto layers = state.clouds->layers();
@@ -224,8 +227,7 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<
   std::vector<float> cuts;
   std::vector<std::size_t> volumes;  // the others are drawn as sheets or metaballs
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const weather::Layer& layer = state.weather.layers[i];
-    if (scene::isSheet(state.scene, layer) || scene::isMetaballs(state.scene, layer)) continue;
+    if (!scene::isVolumeInField(state.scene, state.weather, i)) continue;
     volumes.push_back(i);
     cuts.insert(cuts.end(), {layers[i].baseM, layers[i].topM});
   }

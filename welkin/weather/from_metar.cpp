@@ -39,6 +39,9 @@ constexpr double kLeastObscuringDepthM = 60.0, kMostObscuringDepthM = 1500.0;
 constexpr double kThinFogOpticalDepth = 0.06;
 constexpr double kCoveringOpticalDepth = 0.3;
 
+// Rain where a report does not say how much falls: moderate showers, and the core of a storm.
+constexpr double kShowerMmPerH = 5.0, kStormRainMmPerH = 25.0;
+
 std::string metres(double m) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f m", m);
@@ -72,6 +75,7 @@ class Builder {
   void limitDepths();
   double depthM(const Layer& layer, MetarCover cover, bool towering) const;
   void addThunderstorm();
+  void addRain();
   void addFog();
   void setVisibility();
   void setWinds();
@@ -94,6 +98,7 @@ Weather Builder::build() {
   setSurface();
   addClouds();
   addThunderstorm();
+  addRain();
   limitDepths();
   addFog();
   setVisibility();
@@ -142,7 +147,6 @@ void Builder::setSurface() {
   weather_.precipitation = present_.kind;
   weather_.precipitationMmPerH = present_.rateMmPerH;
   weather_.thunder = present_.thunder;
-  if (!present_.vicinity.empty()) note("In the vicinity only, and not drawn: " + present_.vicinity + ".");
 }
 
 // Bases that a report does not give: the condensation level for convective cloud where temperature and dew
@@ -308,6 +312,27 @@ void Builder::addThunderstorm() {
   storm.topM = storm.baseM + depthM(storm, MetarCover::kBroken, false);
   *best = storm;
   note("Thunder is reported without CB; the layer at " + metres(storm.baseM) + " is taken for it.");
+}
+
+// Shafts of rain beneath heaps and storms. Steady rain falls everywhere and is in the visibility. A storm
+// rains somewhere, whatever falls at the station (International Cloud Atlas: cumulonimbus is often
+// accompanied by precipitation); towering cumulus and other heaps where showers are reported, there or in the
+// vicinity.
+void Builder::addRain() {
+  const bool showers = present_.character == PrecipitationCharacter::kShowers;
+  const bool around =
+      present_.vicinity.find("SH") != std::string::npos || present_.vicinity.find("TS") != std::string::npos;
+  bool falls = false;
+  for (Layer& layer : weather_.layers) {
+    if (layer.genus == Genus::kCumulonimbus) {
+      layer.rainMmPerH = showers ? std::max(present_.rateMmPerH, kStormRainMmPerH) : kStormRainMmPerH;
+    } else if (layer.genus == Genus::kCumulus && (showers || around)) {
+      layer.rainMmPerH = showers ? present_.rateMmPerH : kShowerMmPerH;
+    }
+    falls = falls || layer.rainMmPerH > 0.0;
+  }
+  if (!present_.vicinity.empty() && !(falls && around))
+    note("In the vicinity only, and not drawn: " + present_.vicinity + ".");
 }
 
 // A sheet reported under another ends below it. Heaps and storms rise through what is above them.

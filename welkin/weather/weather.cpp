@@ -10,6 +10,7 @@ namespace welkin::weather {
 namespace {
 
 constexpr double kMaxHeightM = 25000.0;
+constexpr double kMostRainMmPerH = 300.0;
 
 void require(bool condition, const Layer& layer, const std::string& message) {
   if (condition) return;
@@ -37,6 +38,11 @@ void describe(Layer& layer, ParamVisitor& v) {
   v.value({"wind_from_deg", "deg", "direction the layer's wind comes from, clockwise from north", 0.0, 360.0},
           layer.windFromDeg);
   v.value({"wind_speed_mps", "m/s", "speed of the layer's wind", 0.0, 150.0}, layer.windSpeedMps);
+  v.value({"rain_mm_per_h", "mm/h",
+           "rain that is seen to fall from the thickest parts of a layer drawn as a volume; of the lowest "
+           "two such layers",
+           0.0, kMostRainMmPerH},
+          layer.rainMmPerH);
   v.choice({"technique", "",
             "how the layer is drawn, as a volume, as a thin sheet on a surface or as clouds of metaballs; "
             "auto or left out: as the "
@@ -53,6 +59,7 @@ void validate(const Layer& layer) {
   require(within(layer.extinctionPerM, 0.0, 1.0), layer, "extinction_per_m must be from 0 to 1");
   require(within(layer.windFromDeg, 0.0, 360.0), layer, "wind_from_deg must be from 0 to 360");
   require(within(layer.windSpeedMps, 0.0, 150.0), layer, "wind_speed_mps must be from 0 to 150");
+  require(within(layer.rainMmPerH, 0.0, kMostRainMmPerH), layer, "rain_mm_per_h must be from 0 to 300");
 }
 
 }  // namespace welkin::weather

@@ -49,6 +49,7 @@ struct Layer {
   double extinctionPerM = 0.05;    // typical extinction in the body of the cloud at visible wavelengths, 1/m
   double windFromDeg = 270.0;      // true direction the layer's wind comes from
   double windSpeedMps = 8.0;
+  double rainMmPerH = 0.0;   // of water, seen to fall from the thickest parts; 0: none
   bool baseAssumed = false;  // the report did not give the base; it is climatological
   Technique technique = Technique::kAuto;
 
@@ -66,6 +67,8 @@ Layer typicalLayer(Genus genus, double latitudeDeg);
 
 // Most layers that a Weather has.
 inline constexpr std::size_t kMaxLayers = 8;
+// Of these, rain is drawn beneath the lowest two from which it falls.
+inline constexpr std::size_t kMaxRainingLayers = 2;
 
 enum class PrecipitationKind { kNone, kDrizzle, kRain, kSnow, kIcePellets, kHail };
 

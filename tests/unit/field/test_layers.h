@@ -19,7 +19,7 @@ inline CloudLayer cumulusLike(float threshold) {
   l.cellM = 18000, l.cellWeight = 0.8f, l.fractalWeight = 0.35f, l.patchWeight = 0.48f, l.patchM = 50000,
   l.warpM = 300;
   l.dome = 1.1f, l.domePower = 1.7f, l.bottomSoft = 0.05f, l.topSoft = 0.1f;
-  l.shapeM = 2500, l.shapeAmount = 0.4f, l.shapeAtBase = 0.2f, l.shapeStretch = 1;
+  l.shapeM = 2500, l.shapeAmount = 0.4f, l.shapeAtBase = 0.2f, l.shapeStretch = 1, l.shapeTall = 1;
   l.detailM = 500, l.detailAmount = 0.12f;
   l.edge = 0.12f, l.lift = 0.6f, l.reachM = 300;
   return l;

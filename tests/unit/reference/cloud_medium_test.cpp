@@ -99,6 +99,11 @@ TEST(MajorantGrid, BoundsSeveralLayersAtOnce) {
   Cells cells;
   look(skyOf({Genus::kCumulus, Genus::kStratocumulus, Genus::kCirrus}, 5.0), cells, 3);
   EXPECT_GT(cells.cloudy, 100);
+  Cells rain;
+  scene::Scene storm = testing::cloudyScene(40.0, {Genus::kCumulonimbus}, 4.0);
+  storm.layers[0].rainMmPerH = 25.0;
+  look(scene::buildSky(storm, 600.0), rain, 5);
+  EXPECT_GT(rain.cloudy, 50);
   Cells overcast;
   look(skyOf({Genus::kStratus}, 8.0), overcast, 4);
   EXPECT_GT(overcast.tight, 100);  // where only height counts

@@ -129,8 +129,8 @@ TEST(CoverDelivery, ALaterSkyIsTheSameFromAnEarlierOneAsFromNothing) {
   const SkyState later = buildSky(scene, 600.0), continued = buildSky(scene, 600.0, &first);
   SkyState moved = first;
   moveSky(moved, 600.0);
-  ASSERT_EQ(later.clouds->layers().size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
+  ASSERT_EQ(later.clouds->layers().size(), 3u);  // snow falls from the first
+  for (std::size_t i = 0; i < 3; ++i) {
     std::vector<float> a, b, c;
     auto into = [](std::vector<float>& v) {
       return [&v](const char*, const auto& value) {

@@ -176,6 +176,20 @@ TEST(Uniforms, LightVolumeBandsCoverTheLayers) {
   EXPECT_TRUE(lightVolumeLayout(scene::buildSky(clearScene(40.0), 0.0)).heightsM.empty());
 }
 
+TEST(Uniforms, RainHasABandBeneathItsCloud) {
+  scene::Scene storm = cloudyScene(40.0, {Genus::kCirrus, Genus::kCumulonimbus});
+  const auto at = std::ranges::find(storm.layers, Genus::kCumulonimbus, &weather::Layer::genus);
+  at->rainMmPerH = 25.0;
+  const scene::SkyState state = scene::buildSky(storm, 0.0);
+  const LightVolumeLayout layout = lightVolumeLayout(state);
+  EXPECT_EQ(layout.bands.front().layers, std::vector<int>{2});
+  EXPECT_EQ(layout.bands.front().baseM, 0.0f);
+  EXPECT_EQ(layout.bands.front().topM, static_cast<float>(at->baseM));
+  const Uniforms uniforms = cloudUniforms(state);
+  EXPECT_EQ(valueOf<std::vector<float>>(uniforms, "uLayerIce")[2], 0.0f);
+  EXPECT_EQ(valueOf<std::vector<float>>(uniforms, "uLayerCover")[2], static_cast<float>(at->oktas / 8.0));
+}
+
 TEST(Uniforms, BetterQualityTakesFinerSteps) {
   const scene::Quality order[] = {scene::Quality::kLow, scene::Quality::kMedium, scene::Quality::kHigh,
                                   scene::Quality::kUltra};

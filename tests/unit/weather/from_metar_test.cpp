@@ -44,6 +44,36 @@ TEST(FromMetar, ClearSkiesInventNoLayer) {
   EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 ////// 20/10 Q1015"), "cannot observe"));
 }
 
+// Rain that is seen to fall, layer by layer, mm/h.
+TEST(FromMetar, ShaftsOfRainFallFromHeapsAndStorms) {
+  const auto rainOf = [](const std::string& what) {
+    std::vector<double> rain;
+    for (const Layer& l : weatherOf("LSZH 211200Z 24005KT 9999 " + what + " 20/14 Q1015").layers)
+      rain.push_back(l.rainMmPerH);
+    return rain;
+  };
+  using Rain = std::vector<double>;
+  EXPECT_EQ(rainOf("SCT030 BKN100"), (Rain{0.0, 0.0}));
+  EXPECT_EQ(rainOf("RA OVC030"), (Rain{0.0}));  // everywhere, and in the visibility
+  EXPECT_EQ(rainOf("FEW030TCU"), (Rain{0.0}));
+  const Rain showers = rainOf("-SHRA FEW020TCU BKN100"), heavy = rainOf("+SHRA FEW020TCU BKN100");
+  ASSERT_EQ(showers.size(), 2u);
+  EXPECT_GT(showers[0], 0.5);
+  EXPECT_EQ(showers[1], 0.0);
+  EXPECT_GT(heavy[0], 5.0 * showers[0]);
+  EXPECT_GT(rainOf("VCSH FEW020TCU")[0], 1.0);
+  // A storm rains, if not at the station.
+  EXPECT_EQ(rainOf("FEW020 SCT030CB")[0], 0.0);
+  EXPECT_GT(rainOf("FEW020 SCT030CB")[1], 10.0);
+  EXPECT_GT(rainOf("+TSRA SCT030CB")[0], 10.0);
+}
+
+TEST(FromMetar, SaysWhatOfTheVicinityIsNotDrawn) {
+  EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 VCFG FEW030 20/14 Q1015"), "not drawn: VCFG"));
+  EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 VCSH OVC100 20/14 Q1015"), "not drawn: VCSH"));
+  EXPECT_FALSE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 VCSH FEW030TCU 20/14 Q1015"), "not drawn"));
+}
+
 TEST(FromMetar, BasesAndCoverAreThoseOfTheReport) {
   const Weather w = weatherOf("LSZH 211200Z 24005KT 9999 FEW020 SCT045 BKN250 20/14 Q1015");
   ASSERT_EQ(w.layers.size(), 3u);
