@@ -39,8 +39,8 @@ void describe(Layer& layer, ParamVisitor& v) {
           layer.windFromDeg);
   v.value({"wind_speed_mps", "m/s", "speed of the layer's wind", 0.0, 150.0}, layer.windSpeedMps);
   v.value({"rain_mm_per_h", "mm/h",
-           "rain that is seen to fall from the thickest parts of a layer drawn as a volume; of the lowest "
-           "two such layers",
+           "rain that is seen to fall from the thickest parts of a layer drawn as a volume, of two layers at "
+           "most; 0 or left out: none",
            0.0, kMostRainMmPerH},
           layer.rainMmPerH);
   v.choice({"technique", "",
