@@ -24,7 +24,7 @@ struct Habit {
   double dome, domePower, belly, anvil;
   double bottomSoft, topSoft;
   double blob, blobMinM, blobMaxM;  // largest blob of the 3D noise
-  double shapeAmount, shapeAtBase, shapeStretch;
+  double shapeAmount, shapeAtBase, shapeStretch, shapeTall;
   double detailM;  // largest bump of the fine noise
   double detailAmount;
   double edge, lift;
@@ -35,43 +35,43 @@ struct Habit {
 // In the order of weather::Genus. Chosen by eye against photographs of the International Cloud Atlas.
 constexpr std::array<Habit, 11> kHabits = {{
     // cumulus: flat bases, domed towers, cauliflower
-    {1.7, 700, 4000, 9000, .84, .20, .50, .35, 1.0, 2.6, 1.55, .05, 0,  .05,
-     .06, .42, 250,  900,  .48, .22, 1.0, 75,  .17, .07, .75,  .15, 1.2},
+    {1.7, 700, 4000, 9000, .84, .20, .50, .35, 1.0, 2.6, 1.55, .05, 0,   .05,
+     .06, .42, 250,  900,  .48, .22, 1.0, 1.0, 75,  .17, .07,  .75, .15, 1.2},
     // stratocumulus: lumps and rolls, shallow, flat above and below
-    {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0, .12,
-     .18, .90, 250,  700,   .42, .50, 1.2, 80,  .17, .20, .60, .10, .5},
+    {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0,   .12,
+     .18, .90, 250,  700,   .42, .50, 1.2, 1.0, 80,  .17, .20, .60, .10, .5},
     // stratus: a featureless sheet
-    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, .30, 0, .25,
-     .35, 1.2,  300,  900,   .34, .75, 1.5, 90,  .20, .40, .30, .10, .2},
+    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, .30, 0,   .25,
+     .35, 1.2,  300,  900,   .34, .75, 1.5, 1.0, 90,  .20, .40, .30, .10, .2},
     // nimbostratus: deep, dark, ragged beneath
-    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0, .12,
-     .25, .30,  400,  1200,  .35, .80, 1.3, 220, .12, .60, .30, .20, .4},
+    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0,   .12,
+     .25, .30,  400,  1200,  .35, .80, 1.3, 1.0, 220, .12, .60, .30, .20, .4},
     // cumulonimbus: broad below, an anvil above that the wind draws out
-    {1.9, 12000, 24000, 50000, .80, .20, .38, .25, 1.0,  .50,  1.0, -.70, 1.05, .02,
-     .12, .13,   600,   1300,  .24, .30, 1.0, 160, .065, .035, .55, .40,  4.0},
-    // altocumulus: a field of small cells in patches
-    {1.2, 350, 800, 12000, .80, .30, .52, .45, 1.3, .55, 2.0, .35, 0, .20,
-     .25, .55, 120, 300,   .40, .70, 1.2, 60,  .15, .35, .20, .20, .3},
+    {1.9, 12000, 24000, 50000, .80, .20, .38, .25, 1.0, .50,  1.0,  -.70, 1.05, .02,
+     .12, .13,   600,   1300,  .24, .30, 1.0, 1.0, 160, .065, .035, .55,  .40,  4.0},
+    // altocumulus: patches of small flat cells
+    {1.4, 400, 900, 5500, .80, .20, .90, .45, 1.3, 1.3, 1.6, 1.2, 0,   .20,
+     .25, .55, 120, 300,  .40, .70, 1.2, 0.4, 60,  .15, .35, .20, .20, .3},
     // altostratus: a thin wide veil, streaked
-    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 2.0, .35, 0, .30,
-     .35, .50,  500,  1500,  .30, .80, 2.5, 260, .10, .90, .10, .60, .2},
+    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 2.0, .35, 0,   .30,
+     .35, .50,  500,  1500,  .30, .80, 2.5, 1.0, 260, .10, .90, .10, .60, .2},
     // cirrus: fibres drawn out by wind shear
-    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60,  1.0, .30, 0, .25,
-     .25, .70,  350,  700,   .75, .90, 9.0, 130,  .55, 1.70, .00, 4.0, .3},
+    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60, 1.0,  .30, 0,   .25,
+     .25, .70,  350,  700,   .75, .90, 9.0, 1.0,  130, .55, 1.70, .00, 4.0, .3},
     // cirrocumulus: grains and ripples
-    {.9,  180, 380, 9000, .82, .25, .52, .50, 1.8, .45, 2.0, .35, 0, .25,
-     .25, .40, 90,  200,  .40, .80, 1.8, 45,  .15, .60, .00, .50, .2},
+    {.9,  180, 380, 9000, .82, .25, .52, .50, 1.8, .45, 2.0, .35, 0,   .25,
+     .25, .40, 90,  200,  .40, .80, 1.8, 1.0, 45,  .15, .60, .00, .50, .2},
     // cirrostratus: an even veil
-    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25,  2.0, .25, 0, .30,
-     .30, .80,  700,  1500,  .22, .90, 5.0, 300, .10, 1.50, .00, 2.0, .1},
+    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25, 2.0,  .25, 0,   .30,
+     .30, .80,  700,  1500,  .22, .90, 5.0, 1.0, 300, .10, 1.50, .00, 2.0, .1},
     // fog
-    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 1.6, 0,   0, .001,
-     .40, 1.2, 90,   220,  .30, .40, 1.5, 60,  .12, .60, .00, .20, .1},
+    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 1.6, 0,   0,   .001,
+     .40, 1.2, 90,   220,  .30, .40, 1.5, 1.0, 60,  .12, .60, .00, .20, .1},
 }};
 
 // Deep cumulus: towers that are broad below and round above.
-constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .84, .12, .40, .35, 1.0, 1.10, 2.0, -.30, 0,  .05,
-                              .06, .42, 250,  1200,  .28, .22, 1.0, 110, .08, .05,  .75, .15,  1.2};
+constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .84, .12, .40, .35, 1.0, 1.10, 2.0, -.30, 0,   .05,
+                              .06, .42, 250,  1200,  .28, .22, 1.0, 1.0, 110, .08,  .05, .75,  .15, 1.2};
 constexpr double kMediocrisM = 1300.0, kCongestusM = 2400.0;  // depths of either
 
 Habit mixed(const Habit& a, const Habit& b, double share) {
@@ -146,7 +146,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.shapeAmount = static_cast<float>(habit.shapeAmount);
   s.shapeAtBase = static_cast<float>(habit.shapeAtBase);
   s.shapeStretch = static_cast<float>(habit.shapeStretch);
-  s.shapeTall = 1.0f;
+  s.shapeTall = static_cast<float>(habit.shapeTall);
   s.detailM = static_cast<float>(5.0 * habit.detailM);
   s.detailAmount = static_cast<float>(habit.detailAmount);
   // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the

@@ -33,9 +33,12 @@ class Shape {
       : noise_(field::makeCloudNoise(1)), clouds_(made(layerOf(genus, depthM, oktas))) {}
 
   bool at(int x, int y, double height) const {
+    return at(kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces), height);
+  }
+  bool at(glm::vec2 placeM, double height) const {
     const field::CloudLayer& l = clouds_.layers()[0];
     const auto h = static_cast<float>(height);
-    const glm::vec2 p = kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces) + l.shearM * h;
+    const glm::vec2 p = placeM + l.shearM * h;
     const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
     return clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop}) > 0.0f;
   }
@@ -53,6 +56,38 @@ class Shape {
       for (int x = 0; x < kPlaces; ++x)
         if (at(x, y, height)) ++n, both += at(x, y, other);
     return both / static_cast<double>(n);
+  }
+
+  // Mean length of what lines meet of cloud, m: level ones half way up, and upright ones.
+  double levelM() const {
+    constexpr int kSteps = 2000;
+    constexpr float kStepM = 25.0f;
+    int clouds = 0, n = 0;
+    for (int y = 0; y < 40; ++y) {
+      bool before = false;
+      for (int x = 0; x < kSteps; ++x) {
+        const bool here = at(
+            glm::vec2(kStepM * (static_cast<float>(x) - 0.5f * kSteps), 977.0f * static_cast<float>(y)), 0.5);
+        n += here, clouds += here && !before;
+        before = here;
+      }
+    }
+    return static_cast<double>(kStepM) * n / clouds;
+  }
+  double uprightM() const {
+    const double depthM = clouds_.layers()[0].topM - clouds_.layers()[0].baseM;
+    constexpr int kSteps = 50;
+    int clouds = 0, n = 0;
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x) {
+        bool before = false;
+        for (int i = 0; i < kSteps; ++i) {
+          const bool here = at(x, y, (i + 0.5) / kSteps);
+          n += here, clouds += here && !before;
+          before = here;
+        }
+      }
+    return depthM / kSteps * n / clouds;
   }
 
  private:
@@ -88,6 +123,11 @@ TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
   EXPECT_LT(heaps.share(0.55), 0.3 * heaps.share(0.1));
   EXPECT_GT(towers.share(0.55), 0.35 * towers.share(0.1));
   EXPECT_GT(towers.carried(0.55, 0.1), 0.98);
+}
+
+TEST(CloudShapes, CellsOfAltocumulusAreFlat) {
+  const Shape cells(Genus::kAltocumulus, 500.0, 4.0);
+  EXPECT_GT(cells.levelM(), 2.5 * cells.uprightM());
 }
 
 // Heaps turn into towers as they get deeper, and nowhere at once.
