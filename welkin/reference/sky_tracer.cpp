@@ -29,9 +29,7 @@ namespace shared {
 using namespace welkin::glsl;
 using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
-// Keeps the order of the two apart.
 #include "shaders/lib/ground.glsl"
-// Nor of these.
 #include "shaders/lib/stars.glsl"
 }  // namespace shared
 
