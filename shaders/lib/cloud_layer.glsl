@@ -3,6 +3,8 @@
 // Lengths in metres. "sd" is a standard deviation of the layer's placement noise, the unit of everything that moves the cloud's
 // surface: the cloud is where placement - threshold - profile(height) + shape + detail > 0.
 
+WELKIN_CONST int kMaxLayers = 10;  // eight of cloud, two of rain
+
 struct CloudLayer {
   float baseM;          // height of the base above the ground
   float topM;           // height of the highest tops

@@ -8,16 +8,16 @@
 // band) for each. Indices are constants then, and a march through one band costs nothing for the others; compilers that run all
 // branches of a program for all its pixels (Mesa's software rasteriser above all) would pay for every layer at every step.
 
-WELKIN_FIXED uniform CloudLayer uLayers[10];
-WELKIN_FIXED uniform float uLayerIce[10];      // 1: ice crystals, 0: droplets
-WELKIN_FIXED uniform float uLayerCover[10];    // of the sky, [0, 1]
+WELKIN_FIXED uniform CloudLayer uLayers[kMaxLayers];
+WELKIN_FIXED uniform float uLayerIce[kMaxLayers];    // 1: ice crystals, 0: droplets
+WELKIN_FIXED uniform float uLayerCover[kMaxLayers];  // of the sky, [0, 1]
 uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
 uniform sampler3D uDetailNoise;
 
 // How far a point is inside each layer's cloud before the 3D noises shape it (cloudSurface).
 struct CloudSurfaces {
-  float s[10];
+  float s[kMaxLayers];
 };
 
 // What the layers at a point come to.

@@ -6,7 +6,7 @@
 // another along z. Channels: depth up the line, straight up, down the line, straight down. The line points to the sun, or away
 // from it when the sun is below the horizon, so that it always goes up.
 
-const int kMaxBands = 10;
+const int kMaxBands = kMaxLayers;
 const int kCascades = 3;
 
 // Of each band base m, top m, first slice, last slice; those that there are not lie above everything. Where the order of the march is compiled

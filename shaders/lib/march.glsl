@@ -28,7 +28,7 @@ uniform int uSunSamples;          // density samples towards the sun before the 
 #ifdef WELKIN_SHEETS
 WELKIN_FIXED uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
 uniform int uHits;                // WELKIN_HITS
-WELKIN_FIXED uniform vec4 uBandSky[10];        // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
+WELKIN_FIXED uniform vec4 uBandSky[kMaxLayers];  // for each band: of the light of the sky, and (w) of the key light on average, what sheets over it let through
 #endif
 
 // A march of segments of a ray, one behind the other (WELKIN_SEGMENTS): none steps beyond its end, and cloud at its beginning is cloud from

@@ -28,7 +28,7 @@ uniform mat4 uLastClipFromEnu;    // positions from the last eye to the last pic
 uniform vec3 uEyeMoveM;           // since then
 uniform float uEyeM;
 uniform float uEarthRadiusM;
-const int kMaxBands = 10;
+const int kMaxBands = kMaxLayers;
 WELKIN_FIXED uniform vec4 uBands[kMaxBands];      // base, top: as in lib/light_volume.glsl
 WELKIN_FIXED uniform vec4 uBandMoveM[kMaxBands];  // xy: with the wind since then
 

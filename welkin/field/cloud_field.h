@@ -18,10 +18,6 @@
 
 namespace welkin::field {
 
-// Most layers that a field may have (the renderers' uniform arrays are this long): eight of cloud, two of
-// rain.
-inline constexpr int kMaxLayers = 10;
-
 // The noise that clouds are made of; tileable. Depends on the seed alone.
 struct CloudNoise {
   Image<float> placement;  // 3 channels: round cells, fractal noise, patches; each standard normal
@@ -32,7 +28,7 @@ std::shared_ptr<const CloudNoise> makeCloudNoise(std::uint64_t seed);
 
 class CloudField {
  public:
-  // Throws ParameterError for more than kMaxLayers layers.
+  // Throws ParameterError for more than kMaxLayers layers (cloud_layer.glsl).
   CloudField(std::shared_ptr<const CloudNoise> noise, std::vector<CloudLayer> layers, double groundAltitudeM);
 
   const CloudNoise& noise() const { return *noise_; }

@@ -6,6 +6,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "welkin/core/glsl.h"
+
 namespace welkin::field {
 
 using glm::vec2, glm::vec3;

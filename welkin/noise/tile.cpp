@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "welkin/core/normal.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/noise/noise.h"
@@ -25,16 +26,6 @@ void normalise(std::vector<float>& v) {
   const double mean = sum / static_cast<double>(v.size());
   const double deviation = std::sqrt(std::max(squares / static_cast<double>(v.size()) - mean * mean, 1e-20));
   for (float& x : v) x = static_cast<float>((x - mean) / deviation);
-}
-
-// Quantile function of the normal distribution: Abramowitz & Stegun 1964, 26.2.23, absolute error
-// below 4.5e-4.
-float normalQuantile(double p) {
-  const bool upper = p > 0.5;
-  const double t = std::sqrt(-2.0 * std::log(upper ? 1.0 - p : p));
-  const double z =
-      t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-  return static_cast<float>(upper ? z : -z);
 }
 
 // A key whose order as an integer is that of the float (not a NaN): negative numbers are stored as sign and
@@ -73,7 +64,7 @@ void makeGaussian(std::vector<float>& v) {
   const double count = static_cast<double>(v.size());
   parallelFor(v.size(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t rank = begin; rank < end; ++rank)
-      v[order[rank]] = normalQuantile((static_cast<double>(rank) + 0.5) / count);
+      v[order[rank]] = static_cast<float>(normalQuantile((static_cast<double>(rank) + 0.5) / count));
   });
 }
 

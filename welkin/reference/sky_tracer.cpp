@@ -104,10 +104,8 @@ struct SkyTracer::Impl {
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM),
         starlight(s.scene.output.stars ? sky::starlightShare(s.ephemeris.sun.elevationDeg) : 0.0f),
         celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)) {
-    glm::vec3 middle(0.0f);
-    float pixelRad = 0.0f;
-    scene::directionAt(projector, 0.5f * projector.sizePx, middle, pixelRad);
-    if (starlight > 0.0f) stars = sky::starCells(sky::starLights(s.scene.time), sky::starLevel(pixelRad));
+    if (starlight > 0.0f)
+      stars = sky::starCells(sky::starLights(s.scene.time), sky::starLevel(scene::middlePixelRad(projector)));
   }
 
   const scene::SkyState state;

@@ -142,9 +142,8 @@ void LiveSky::update(const scene::SkyState& state) {
 void LiveSky::Impl::change(const scene::SkyState& next) {
   const bool same = state && state->scene == next.scene;
   Others there;
-  there.volumes = std::ranges::any_of(next.weather.layers, [&](const weather::Layer& layer) {
-    return !scene::isSheet(next.scene, layer) && !scene::isMetaballs(next.scene, layer);
-  });
+  there.volumes = std::ranges::any_of(
+      next.weather.layers, [&](const weather::Layer& layer) { return scene::isVolume(next.scene, layer); });
   there.splats = LiveSplats::in(next);
   if (!same) updateBox(next.scene.skyBox, there);  // first, as its files may be missing
   state = next;

@@ -54,15 +54,6 @@ std::vector<gpu::Tile> rowBands(int width, int height) {
   return bands;
 }
 
-// Of the middle of the picture: the largest there are.
-float pixelRadOf(const scene::SkyState& state) {
-  const scene::Projector projector = scene::projectorOf(state);
-  glm::vec3 direction(0.0f);
-  float pixelRad = 0.0f;
-  scene::directionAt(projector, 0.5f * projector.sizePx, direction, pixelRad);
-  return pixelRad;
-}
-
 }  // namespace
 
 struct SkyRenderer::Impl {
@@ -158,7 +149,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
 void SkyRenderer::Impl::bind(gpu::Program& p, const scene::SkyState& state) {
   clouds->bind(p);
   tables.bind(p);
-  tables.bindStars(p, state, pixelRadOf(state));
+  tables.bindStars(p, state, scene::middlePixelRad(scene::projectorOf(state)));
   p.bind("uLightVolume", lightVolume.volume());
   p.bind("uFluence", lightVolume.fluence());
   sheets.bind(p);

@@ -65,7 +65,7 @@ std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather:
   double clear = 1.0;  // the share of the sky that random overlap leaves
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     const weather::Layer& layer = weather.layers[i];
-    if (isSheet(scene, layer) || isMetaballs(scene, layer)) {
+    if (!isVolume(scene, layer)) {
       result.push_back({patternSeed(scene, i, 0), 0.0f, static_cast<float>(layer.extinctionPerM)});
       continue;
     }

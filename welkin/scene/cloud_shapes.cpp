@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "welkin/core/random.h"
-#include "welkin/core/units.h"
+#include "welkin/weather/wind.h"
 
 namespace welkin::scene {
 namespace {
@@ -114,8 +114,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   const double weights =
       std::sqrt(habit.cellWeight * habit.cellWeight + habit.fractalWeight * habit.fractalWeight +
                 habit.patchWeight * habit.patchWeight);
-  const double towards = radians(layer.windFromDeg + 180.0);
-  const glm::dvec2 windDirection(std::sin(towards), std::cos(towards));
+  const glm::dvec2 windDirection = weather::windTowards(layer.windFromDeg);
   const glm::dvec2 driftM = windDirection * (layer.windSpeedMps * secondsAfter);
   Random random(seed);
   const double offsetX = 2.0e5 * random.uniform(), offsetY = 2.0e5 * random.uniform();

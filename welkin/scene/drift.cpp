@@ -6,6 +6,7 @@
 
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
+#include "welkin/weather/wind.h"
 
 namespace welkin::scene {
 namespace {
@@ -29,8 +30,7 @@ double gradientNoise(std::uint64_t seed, std::int64_t period, double x) {
 }
 
 glm::dvec2 velocity(const Drift& d, std::uint64_t seed, double windFromDeg, double x) {
-  const double towards = radians(windFromDeg + d.windDeg * driftNoise(seed, x) + 180.0);
-  return {std::sin(towards), std::cos(towards)};
+  return weather::windTowards(windFromDeg + d.windDeg * driftNoise(seed, x));
 }
 
 // Gauss and Legendre, five points: exact for polynomials of degree nine.
@@ -73,10 +73,7 @@ double driftNoise(std::uint64_t seed, double x) {
 }
 
 glm::dvec2 windPath(const Drift& d, std::uint64_t seed, double windFromDeg, double seconds) {
-  if (d.windDeg == 0.0) {
-    const double towards = radians(windFromDeg + 180.0);
-    return {seconds * std::sin(towards), seconds * std::cos(towards)};
-  }
+  if (d.windDeg == 0.0) return seconds * weather::windTowards(windFromDeg);
   const double periodS = d.periodH * kHourS, x = seconds / periodS;
   const double loops = std::floor(x / kDriftLoop);
   glm::dvec2 path = pathInLoop(d, seed, windFromDeg, x - loops * kDriftLoop);

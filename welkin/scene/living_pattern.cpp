@@ -9,8 +9,8 @@
 #include "welkin/core/glsl.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
-#include "welkin/core/units.h"
 #include "welkin/noise/gradient.h"
+#include "welkin/weather/wind.h"
 
 namespace welkin::scene {
 namespace {
@@ -72,8 +72,7 @@ struct LivingPattern::Numbers {
 
 LivingPattern::LivingPattern(const Sheet& sheet, std::uint64_t seed) : living_(sheet.living), seed_(seed) {
   const bool gradient = living_.kernel == OctaveKernel::kGradient;
-  const double towards = radians(sheet.windFromDeg + 180.0);
-  scroll_ = glm::dvec2(std::sin(towards), std::cos(towards)) * (living_.scrollMps / sheet.tileM);
+  scroll_ = weather::windTowards(sheet.windFromDeg) * (living_.scrollMps / sheet.tileM);
 
   auto cells = static_cast<int>(cellsOf(sheet));
   double amplitude = sheet.amplitude, intervalS = living_.intervalS;

@@ -33,4 +33,11 @@ bool directionAt(const Projector& p, glm::vec2 px, glm::vec3& direction, float& 
   return shared::projectorDirection(projector, px, direction, pixelRad);
 }
 
+float middlePixelRad(const Projector& projector) {
+  glm::vec3 direction(0.0f);
+  float pixelRad = 0.0f;
+  directionAt(projector, 0.5f * projector.sizePx, direction, pixelRad);
+  return pixelRad;
+}
+
 }  // namespace welkin::scene

@@ -21,5 +21,7 @@ Projector projectorOf(const SkyState& state);
 // Direction and size of a place in the picture, pixels from the top left corner; false outside the picture's
 // circle.
 bool directionAt(const Projector& projector, glm::vec2 px, glm::vec3& direction, float& pixelRad);
+// Angle of a pixel in the middle: there are no larger ones.
+float middlePixelRad(const Projector& projector);
 
 }  // namespace welkin::scene

@@ -5,13 +5,18 @@
 #include <cmath>
 #include <glm/vec2.hpp>
 
-#include "welkin/core/units.h"
+#include "welkin/core/normal.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/weather/wind.h"
 
 namespace welkin::scene {
 namespace {
 
+static_assert(weather::kMaxLayers + weather::kMaxRainingLayers ==
+              static_cast<std::size_t>(field::kMaxLayers));
+
 constexpr double kRainingShare = 0.3;  // of what a layer's base covers: the cores of showers
+constexpr double kLeastShare = 1e-12;  // of places
 constexpr double kLeastBaseM = 50.0;   // beneath which nothing is seen of a shaft
 constexpr double kSnowBelowC = 1.0;    // at the ground, where nobody says what falls
 
@@ -29,21 +34,6 @@ constexpr Falling kRain = {3.65e-4, 0.63, 6.0, 1300.0};
 // visibility").
 constexpr Falling kSnow = {3.0e-3, 0.7, 1.2, 1300.0};
 
-// The number that a standard normal variable exceeds with this chance.
-double exceededWith(double chance) {
-  double low = -8.0, high = 8.0;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(middle / std::sqrt(2.0)) > chance ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-glm::dvec2 windOf(double fromDeg, double speedMps) {
-  const double towards = radians(fromDeg + 180.0);
-  return speedMps * glm::dvec2(std::sin(towards), std::cos(towards));
-}
-
 bool fallsAsSnow(const weather::Weather& weather) {
   using weather::PrecipitationKind;
   return weather.precipitation == PrecipitationKind::kSnow ||
@@ -56,8 +46,7 @@ RainingLayers rainingLayers(const Scene& scene, const weather::Weather& weather)
   RainingLayers raining;
   for (std::size_t i = 0; i < weather.layers.size() && raining.count < raining.of.size(); ++i) {
     const weather::Layer& layer = weather.layers[i];
-    if (layer.rainMmPerH > 0.0 && layer.baseM >= kLeastBaseM && !isSheet(scene, layer) &&
-        !isMetaballs(scene, layer))
+    if (layer.rainMmPerH > 0.0 && layer.baseM >= kLeastBaseM && isVolume(scene, layer))
       raining.of[raining.count++] = i;
   }
   return raining;
@@ -70,8 +59,7 @@ LayerOfField layerOfField(const Scene& scene, const weather::Weather& weather, s
 }
 
 bool isVolumeInField(const Scene& scene, const weather::Weather& weather, std::size_t index) {
-  const weather::Layer& layer = weather.layers[layerOfField(scene, weather, index).of];
-  return !isSheet(scene, layer) && !isMetaballs(scene, layer);
+  return isVolume(scene, weather.layers[layerOfField(scene, weather, index).of]);
 }
 
 bool isIceInField(const Scene& scene, const weather::Weather& weather, std::size_t index) {
@@ -90,8 +78,8 @@ field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::L
   constexpr double kFading = 0.7;  // share of its depth over which it thins out
   const double fading = kFading * std::clamp(2.0 - fallsM / topM, 0.0, 1.0);
   // Drops fall out of the cloud's wind into ever less of it and stay behind.
-  const glm::dvec2 lagMps = windOf(layer.windFromDeg, layer.windSpeedMps) -
-                            windOf(weather.surfaceWindFromDeg, weather.surfaceWindSpeedMps);
+  const glm::dvec2 lagMps = layer.windSpeedMps * weather::windTowards(layer.windFromDeg) -
+                            weather.surfaceWindSpeedMps * weather::windTowards(weather.surfaceWindFromDeg);
   const glm::dvec2 shearM = 0.5 * lagMps * (depthM / topM) * std::min(depthM / falling.speedMps, 600.0);
 
   field::CloudLayer s = shape;  // the same pattern
@@ -104,8 +92,8 @@ field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::L
   s.domePower = 1.0f;
   s.belly = 0.15f;
   s.anvil = 0.0f;
-  const double covered = 0.5 * std::erfc((shape.threshold + shape.belly) / std::sqrt(2.0));
-  s.threshold = static_cast<float>(exceededWith(kRainingShare * covered));
+  const double covered = normalBelow(-static_cast<double>(shape.threshold + shape.belly));
+  s.threshold = static_cast<float>(-normalQuantile(std::max(kRainingShare * covered, kLeastShare)));
   s.bottomSoft = static_cast<float>(std::max(fading, 1e-3));
   s.topSoft = 1e-3f;
   // Streaks, long and fine, that fall.

@@ -182,6 +182,10 @@ bool isMetaballs(const Scene& scene, const weather::Layer& layer) {
   return techniqueOf(scene, layer) == Technique::kMetaballs;
 }
 
+bool isVolume(const Scene& scene, const weather::Layer& layer) {
+  return !isSheet(scene, layer) && !isMetaballs(scene, layer);
+}
+
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather) {
   std::vector<Sheet> sheets;
   for (const weather::Layer& layer : weather.layers) {

@@ -107,6 +107,7 @@ bool drawsSheets(Technique technique);
 bool isSheet(const Scene& scene, const weather::Layer& layer);  // drawn as one
 bool isMetaballs(const Scene& scene,
                  const weather::Layer& layer);  // drawn as them: neither sheet nor marched volume
+bool isVolume(const Scene& scene, const weather::Layer& layer);  // marched
 // The sheets of a scene: the layers of the weather that are drawn so, then those by hand. Each with
 // its share of the scene's drift.
 std::vector<Sheet> sheetsOf(const Scene& scene, const weather::Weather& weather);

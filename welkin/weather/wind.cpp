@@ -16,6 +16,11 @@ constexpr double kStrongestMps = 120.0;  // jet streams and tornadic storms incl
 
 }  // namespace
 
+glm::dvec2 windTowards(double fromDeg) {
+  const double towards = radians(fromDeg + 180.0);
+  return {std::sin(towards), std::cos(towards)};
+}
+
 double winterness(double latitudeDeg, int month) {
   const double northern = 0.5 + 0.5 * std::cos(2.0 * kPi * (month - 1) / 12.0);
   return latitudeDeg >= 0.0 ? northern : 1.0 - northern;

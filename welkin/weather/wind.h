@@ -2,6 +2,8 @@
 // Wind at a height from the wind at the ground, when nothing else is known. Climatology, not a forecast.
 #pragma once
 
+#include <glm/vec2.hpp>
+
 namespace welkin::weather {
 
 struct Wind {
@@ -20,6 +22,9 @@ struct Wind {
 // Climate, 1992, figure 7.15, at 45 degrees between 850 and 300 hPa), little in the tropics and near the
 // pole; no further growth above 11 km.
 Wind windAloft(const Wind& surface, double heightM, double latitudeDeg, int month);
+
+// Where air goes that comes from this true direction: unit vector, east and north.
+glm::dvec2 windTowards(double fromDeg);
 
 // 1 in midwinter to 0 in midsummer of the hemisphere.
 double winterness(double latitudeDeg, int month);

@@ -39,14 +39,19 @@ field::CloudField cloudsOf(const weather::Weather& weather, double seconds = 0.0
 
 constexpr int kPlaces = 120;
 
-// Extinction of all layers at a height above the ground, at places of a grid about the eye.
+// Extinction of all layers above a place.
+float extinctionAt(const field::CloudField& clouds, glm::vec2 p, float heightM) {
+  const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds.earthRadiusM());
+  return clouds.extinction({p.x, p.y, heightM - drop});
+}
+
+// The same at places of a grid about the eye.
 template <class F>
 void eachPlace(const field::CloudField& clouds, float heightM, F&& f) {
   for (int y = 0; y < kPlaces; ++y)
     for (int x = 0; x < kPlaces; ++x) {
       const glm::vec2 p = 600.0f * (glm::vec2(x, y) - 0.5f * kPlaces);
-      const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds.earthRadiusM());
-      f(clouds.extinction({p.x, p.y, heightM - drop}), p);
+      f(extinctionAt(clouds, p, heightM), p);
     }
 }
 
@@ -67,8 +72,7 @@ TEST(RainShafts, HangFromTheCoresOfAStorm) {
   eachPlace(clouds, 1190.0f, [&](float extinction, glm::vec2 p) {
     if (extinction <= 0.0f) return;
     ++wet;
-    const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds.earthRadiusM());
-    beneath += clouds.extinction({p.x, p.y, 2100.0f - drop}) > 0.0f;
+    beneath += extinctionAt(clouds, p, 2100.0f) > 0.0f;
   });
   ASSERT_GT(wet, 100);
   EXPECT_GT(beneath, 0.97 * wet);
