@@ -245,7 +245,9 @@ void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,
   const glm::ivec2 cell = kOrder[static_cast<std::size_t>(m.frame % kFramesInRound)];
   p.set("uSizePx", glm::vec2(width, height));
   p.set("uBlock", static_cast<float>(kBlock));
-  p.set("uCellPx", glm::vec2(cell) + 0.5f + jitterPx(round));
+  // In motion a pixel is one sample, and half of a block's are of the last round: were each round's elsewhere
+  // in the pixel, edges would be dotted.
+  p.set("uCellPx", glm::vec2(cell) + 0.5f + (m.still ? jitterPx(round) : glm::vec2(0.0f)));
   p.set("uJitterStep", jitterStep(round));
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -48,6 +49,25 @@ class LiveVolumesTest : public ::testing::Test {
   gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
   gpu::Framebuffer target{texture};
 };
+
+// A pixel in motion is one sample: were that taken elsewhere in the pixel each round, the row that the
+// horizon crosses would be dotted, some of its pixels ground and their neighbours sky.
+TEST_F(LiveVolumesTest, InMotionTheHorizonIsALine) {
+  const scene::Scene s = looking(cumulus(), 200.0, 14.2);  // the horizon in the middle of a row
+  const std::array<shading::View, 2> views = {viewOf(s), viewOf(looking(s, 200.001, 14.2))};
+  LiveSky sky;
+  sky.update(s, 0.0);
+  for (int i = 0; i < 2 * kRound + kRound / 2; ++i) after(sky, views[i % 2], 1);
+  const Image<float> picture = target.readPicture(0, 3);
+  for (int y = kHeight / 2; y < kHeight; ++y) {
+    double sum = 0.0, bends = 0.0;
+    for (int x = 1; x + 1 < kWidth; ++x) {
+      sum += picture.at(x, y, 1);
+      bends += std::abs(picture.at(x - 1, y, 1) - 2.0f * picture.at(x, y, 1) + picture.at(x + 1, y, 1));
+    }
+    EXPECT_LT(bends, 0.2 * sum) << "row " << y;
+  }
+}
 
 // From the ground, in the air over a layer, and through a sheet between volumes.
 TEST_F(LiveVolumesTest, AViewThatStaysConvergesToTheStill) {
