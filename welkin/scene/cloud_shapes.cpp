@@ -69,10 +69,10 @@ constexpr std::array<Habit, 11> kHabits = {{
      .40, 1.2, 90,   220,  .30, .40, 1.5, 1.0, 60,  .12, .60, .00, .20, .1},
 }};
 
-// Deep cumulus: towers that are broad below and round above.
-constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .84, .12, .40, .35, 1.0, 1.10, 2.0, -.30, 0,   .05,
-                              .06, .42, 250,  1200,  .28, .22, 1.0, 1.0, 110, .08,  .05, .75,  .15, 1.2};
-constexpr double kMediocrisM = 1300.0, kCongestusM = 2400.0;  // depths of either
+// Deep cumulus: towers that are broad below, with turrets above.
+constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .78, .25, .40, .45, 1.0, 1.9, 1.85, -.10, 0,   .05,
+                              .05, .28, 250,  2000,  .54, .25, 1.0, 1.0, 115, .11, .06,  .75,  .15, 1.2};
+constexpr double kMediocrisM = 1000.0, kCongestusM = 2000.0;  // depths of either
 
 Habit mixed(const Habit& a, const Habit& b, double share) {
   using Numbers = std::array<double, sizeof(Habit) / sizeof(double)>;
