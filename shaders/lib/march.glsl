@@ -39,6 +39,11 @@ WELKIN_FIXED uniform vec4 uBandSky[kMaxLayers];  // for each band: of the light 
 #define WELKIN_WITHIN(step) (step)
 #endif
 
+// Bands of rain or snow alone, which has neither a sharp edge nor forms that the light volume misses: its surface is not sought, nor are shadows in it.
+#ifndef WELKIN_SHAFTS
+#define WELKIN_SHAFTS(band) false
+#endif
+
 const int kSurfaceHalvings = 3;   // of the step in which a surface was met
 
 // The phase functions of the first scattering along a ray, 1/sr.
@@ -77,12 +82,13 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   // cubically, fine where shadows are sharp, the nearest with the small noise; then as the light volume says. It knows nothing of
   // forms smaller than its cells, and a surface that faces the sun would lie in its own shadow: there is a sample for every cell of the
   // way, as far as there is cloud.
+  int sunSamples = WELKIN_SHAFTS(band) ? 0 : uSunSamples;
   float edge = (uKeyDirection.z >= 0.0 ? uBands[band].y : uBands[band].x) - q.z;
-  float reachM = min(float(uSunSamples) * lightVolumeCellM(uLightVolume, q), max(edge / uKeyDirection.z, 1.0));
-  float done = reachM / pow(float(uSunSamples) + 1.0, 3.0);
+  float reachM = min(float(sunSamples) * lightVolumeCellM(uLightVolume, q), max(edge / uKeyDirection.z, 1.0));
+  float done = reachM / pow(float(sunSamples) + 1.0, 3.0);
   float near = point.extinction * done;
-  for (int i = 1; i <= uSunSamples; ++i) {
-    float x = (float(i) + 1.0) / (float(uSunSamples) + 1.0);
+  for (int i = 1; i <= sunSamples; ++i) {
+    float x = (float(i) + 1.0) / (float(sunSamples) + 1.0);
     float end = reachM * x * x * x;
     float at = mix(done, end, 0.3 + 0.4 * fract(dither + 0.382 * float(i)));
     near += (end - done) * cloudExtinctionInBand(band, q + uKeyDirection * at, i == 1 ? detail : 0.0);
@@ -195,7 +201,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
       skinStep = 0.5 / point.extinction;
       // The surface of dense cloud lies in the last step. Thin cloud is left where it was met: a place of chance in it, which stands for a step
       // of it.
-      if (skinStep < shortStep) {
+      if (!WELKIN_SHAFTS(band) && skinStep < shortStep) {
         for (int i = 0; i < kSurfaceHalvings; ++i) {
           float middle = 0.5 * (lastClear + t);
           CloudSurfaces surfaces;

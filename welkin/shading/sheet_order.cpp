@@ -90,7 +90,7 @@ ShaderDefines sheetDefines(const LightVolumeLayout& layout, std::span<const Shee
                         {"WELKIN_EACH_DOWN(BAND, SHEET)", down},
                         {"WELKIN_EACH_UP(BAND, SHEET)", up},
                         {"WELKIN_BANDS", std::to_string(layout.bands.size())}};
-  addBallDefines(layout, defines);
+  addBandDefines(layout, defines);
   return defines;
 }
 

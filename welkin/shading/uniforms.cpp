@@ -234,17 +234,21 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<
   if (ballsM) cuts.insert(cuts.end(), {ballsM->x, ballsM->y});
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
-    LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}, false};
-    for (const std::size_t i : volumes)
-      if (layers[i].baseM <= band.baseM && layers[i].topM >= band.topM)
-        band.layers.push_back(static_cast<int>(i));
+    LightVolumeLayout::Band band{cuts[c], cuts[c + 1], 0, 0, {}};
     band.balls = ballsM && ballsM->x <= band.baseM && ballsM->y >= band.topM;
+    band.shafts = !band.balls;
+    for (const std::size_t i : volumes) {
+      if (layers[i].baseM > band.baseM || layers[i].topM < band.topM) continue;
+      band.layers.push_back(static_cast<int>(i));
+      band.shafts &= scene::layerOfField(state.scene, state.weather, i).isShaft;
+    }
     if ((band.layers.empty() && !band.balls) || band.topM <= band.baseM) continue;
     // Too thin to be worth a band of its own, or no more of them to be had: to the one beneath.
     const bool touches = !layout.bands.empty() && layout.bands.back().topM == band.baseM;
     if ((touches && band.topM - band.baseM < kThinnestM) || layout.bands.size() == kMostBands) {
       layout.bands.back().topM = band.topM;
       layout.bands.back().balls |= band.balls;
+      layout.bands.back().shafts &= band.shafts;
       for (const int i : band.layers)
         if (std::ranges::find(layout.bands.back().layers, i) == layout.bands.back().layers.end())
           layout.bands.back().layers.push_back(i);
@@ -298,11 +302,15 @@ std::string layerCalls(const LightVolumeLayout& layout, int band) {
   return calls;
 }
 
-void addBallDefines(const LightVolumeLayout& layout, ShaderDefines& defines) {
-  std::string bands;
-  for (std::size_t b = 0; b < layout.bands.size(); ++b)
-    if (layout.bands[b].balls) bands += (bands.empty() ? "band == " : " || band == ") + std::to_string(b);
-  if (!bands.empty()) defines.emplace_back("WELKIN_BALLS(band)", "(" + bands + ")");
+void addBandDefines(const LightVolumeLayout& layout, ShaderDefines& defines) {
+  const auto add = [&](const char* name, bool LightVolumeLayout::Band::* holds) {
+    std::string bands;
+    for (std::size_t b = 0; b < layout.bands.size(); ++b)
+      if (layout.bands[b].*holds) bands += (bands.empty() ? "band == " : " || band == ") + std::to_string(b);
+    if (!bands.empty()) defines.emplace_back(name, "(" + bands + ")");
+  };
+  add("WELKIN_BALLS(band)", &LightVolumeLayout::Band::balls);
+  add("WELKIN_SHAFTS(band)", &LightVolumeLayout::Band::shafts);
 }
 
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
@@ -317,7 +325,7 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
                         {"WELKIN_EACH_BAND_DOWN(CALL)", down},
                         {"WELKIN_EACH_BAND_UP(CALL)", up},
                         {"WELKIN_BANDS", std::to_string(layout.bands.size())}};
-  addBallDefines(layout, defines);
+  addBandDefines(layout, defines);
   return defines;
 }
 

@@ -64,6 +64,7 @@ struct LightVolumeLayout {
     int firstSlice, lastSlice;
     std::vector<int> layers;  // that lie in it, by their indices in the field
     bool balls = false;       // metaballs, too, as volumes
+    bool shafts = false;      // what falls, and no cloud
 
     bool operator==(const Band&) const = default;
   };
@@ -88,6 +89,6 @@ using ShaderDefines = std::vector<ShaderDefine>;
 ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
 std::string layerCalls(const LightVolumeLayout& layout, int band);             // of the one and of the other
-void addBallDefines(const LightVolumeLayout& layout, ShaderDefines& defines);  // of both
+void addBandDefines(const LightVolumeLayout& layout, ShaderDefines& defines);  // what else bands hold
 
 }  // namespace welkin::shading
