@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/testing/scratch_folder.h"
 #include "welkin/core/error.h"
 #include "welkin/io/raw.h"
 #include "welkin/io/texel_file.h"
@@ -28,17 +29,9 @@ void require(bool condition) {
 
 // A file that is written anew for each input, in memory where there is /dev/shm.
 std::filesystem::path scratchFile() {
-  static const std::filesystem::path folder = [] {
-    const bool memory = access("/dev/shm", W_OK) == 0;
-    std::string pattern =
-        (memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path()) /
-        "welkin-fuzz-XXXXXX";
-    require(mkdtemp(pattern.data()) != nullptr);
-    return std::filesystem::path(pattern);
-  }();
-  static const int registered = std::atexit([] { std::filesystem::remove_all(scratchFile().parent_path()); });
-  require(registered == 0);
-  return folder / ("x." WELKIN_FUZZ_KIND);
+  static const welkin::testing::ScratchFolder folder(
+      access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path());
+  return folder.path() / ("x." WELKIN_FUZZ_KIND);
 }
 
 void put(const std::filesystem::path& path, const std::uint8_t* data, std::size_t size) {

@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/testing/metaball_scene.h"
 
-#include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "welkin/core/random.h"
 #include "welkin/scene/metaball_file.h"
 
 namespace welkin::testing {
-
-MetaballFolder::MetaballFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "welkin_balls_XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("no folder for a test's files");
-  path_ = name;
-}
-
-MetaballFolder::~MetaballFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 scene::MetaballCloud MetaballFolder::cloud(const std::vector<field::Metaball>& balls,
                                            const glm::dvec3& positionM) const {
@@ -36,7 +24,7 @@ scene::MetaballCloud MetaballFolder::levels(const std::vector<std::vector<field:
                                             const glm::dvec3& positionM) const {
   scene::MetaballFile file;
   for (const std::vector<field::Metaball>& balls : levels) file.levels.push_back({balls, {}, {}});
-  const std::filesystem::path path = path_ / (std::to_string(files_++) + ".json");
+  const std::filesystem::path path = folder_.path() / (std::to_string(files_++) + ".json");
   std::ofstream(path) << scene::metaballText(file);
   scene::MetaballCloud cloud;
   cloud.file = path.string();

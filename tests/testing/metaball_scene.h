@@ -2,9 +2,9 @@
 // Clouds of metaballs for scenes, in files that go when the test does.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
+#include "tests/testing/scratch_folder.h"
 #include "welkin/field/metaballs.h"
 #include "welkin/scene/metaballs.h"
 
@@ -12,11 +12,6 @@ namespace welkin::testing {
 
 class MetaballFolder {
  public:
-  MetaballFolder();  // of its own: tests run side by side
-  ~MetaballFolder();
-  MetaballFolder(const MetaballFolder&) = delete;
-  MetaballFolder& operator=(const MetaballFolder&) = delete;
-
   // At a place in the sky: east, north, above the ground. Densities are extinctions, 1/m.
   scene::MetaballCloud cloud(const std::vector<field::Metaball>& balls, const glm::dvec3& positionM) const;
   // A cloud of one ball.
@@ -26,7 +21,7 @@ class MetaballFolder {
                               const glm::dvec3& positionM) const;
 
  private:
-  std::filesystem::path path_;
+  ScratchFolder folder_;
   mutable int files_ = 0;
 };
 

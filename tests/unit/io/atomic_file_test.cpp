@@ -130,7 +130,7 @@ TEST_F(AtomicFileTest, SignalHandlerLeavesNothing) {
         unfinished.write(std::string(1 << 20, 'x'));
         std::raise(SIGTERM);
       },
-      testing::ExitedWithCode(9), "");
+      ::testing::ExitedWithCode(9), "");
   EXPECT_EQ(fileCount(), 1);
   EXPECT_EQ(contents(folder / "done"), "done");
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -11,26 +10,23 @@
 #include <iterator>
 #include <string>
 
+#include "tests/testing/scratch_folder.h"
 #include "welkin/core/error.h"
 
 namespace welkin::io {
 
-// An empty folder, removed with all in it at the end of the test.
-class Scratch : public testing::Test {
- protected:
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "welkin-io-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~Scratch() override { std::filesystem::remove_all(folder); }
+class Scratch : public ::testing::Test {
+ private:
+  welkin::testing::ScratchFolder scratch_;
 
+ protected:
   int fileCount() const {
     int n = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++n;
     return n;
   }
 
-  std::filesystem::path folder;
+  const std::filesystem::path folder = scratch_.path();
 };
 
 inline std::string contents(const std::filesystem::path& path) {

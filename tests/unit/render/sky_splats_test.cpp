@@ -10,6 +10,7 @@
 
 #include "tests/testing/metaball_scene.h"
 #include "tests/testing/pictures.h"
+#include "tests/testing/scratch_folder.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
@@ -25,13 +26,6 @@ using weather::Genus;
 
 class SkySplatsTest : public ::testing::Test {
  protected:
-  SkySplatsTest() {
-    // A folder of the test's own: tests run side by side.
-    folder = std::filesystem::temp_directory_path() /
-             ("welkin_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder);
-  }
-  ~SkySplatsTest() override { std::filesystem::remove_all(folder); }
   void TearDown() override {
     for (const std::string& error : renderer.takeErrors()) ADD_FAILURE() << error;
   }
@@ -57,7 +51,8 @@ class SkySplatsTest : public ::testing::Test {
     return relativeDifference(drawn(s), without);
   }
 
-  std::filesystem::path folder;
+  ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path();
   SkyRenderer renderer{{.debug = true}};
 };
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/testing/scratch_folder.h"
 #include "welkin/core/error.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
@@ -31,23 +32,18 @@ std::size_t count(std::string_view text, std::string_view what) {
 class DiskShaders {
  public:
   DiskShaders() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "welkin-shaders-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    std::filesystem::create_directories(folder_ / "lib");
-    std::filesystem::create_directories(folder_ / "pass");
+    std::filesystem::create_directories(folder_.path() / "lib");
+    std::filesystem::create_directories(folder_.path() / "pass");
     write("lib/prelude.glsl", "precision highp float;\n");
-    setenv("WELKIN_SHADER_DIR", folder_.c_str(), 1);
+    setenv("WELKIN_SHADER_DIR", folder_.path().c_str(), 1);
   }
-  ~DiskShaders() {
-    unsetenv("WELKIN_SHADER_DIR");
-    std::filesystem::remove_all(folder_);
-  }
+  ~DiskShaders() { unsetenv("WELKIN_SHADER_DIR"); }
   void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
+    std::ofstream(folder_.path() / name, std::ios::binary) << text;
   }
 
  private:
-  std::filesystem::path folder_;
+  testing::ScratchFolder folder_;
 };
 
 std::string messageOf(std::string_view name) {
