@@ -10,6 +10,9 @@
 
 WELKIN_FIXED uniform CloudLayer uLayers[kMaxLayers];
 WELKIN_FIXED uniform float uLayerIce[kMaxLayers];    // 1: ice crystals, 0: droplets
+#ifdef WELKIN_RAIN
+WELKIN_FIXED uniform float uLayerRain[kMaxLayers];   // 1: drops of rain, 0: other matter
+#endif
 WELKIN_FIXED uniform float uLayerCover[kMaxLayers];  // of the sky, [0, 1]
 uniform sampler2D uPlacement;
 uniform sampler3D uShapeNoise;
@@ -29,6 +32,9 @@ struct CloudPoint {
   float clearM;      // where there is none: a distance within which it stays so
   float stepM;       // the longest step that resolves the layers here
   bool inside;       // between base and top of any layer
+#ifdef WELKIN_RAIN
+  float rain;        // the part of the extinction that is rain
+#endif
 };
 
 #ifdef WELKIN_BALLS
@@ -67,8 +73,18 @@ void addLayer(CloudLayer layer, float ice, float cover, vec3 q, float surface, f
 
 // Second half: what is there.
 CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfaces) {
+#ifdef WELKIN_RAIN
+  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false, 0.0);
+#define WELKIN_ADD_LAYER(i, b)                                                               \
+  if (band == b) {                                                                           \
+    float others = point.extinction;                                                         \
+    addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);     \
+    point.rain += uLayerRain[i] * (point.extinction - others);                               \
+  }
+#else
   CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false);
 #define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);
+#endif
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)
 #ifdef WELKIN_BALLS
   if (WELKIN_BALLS(band)) addBalls(q, point);

@@ -20,6 +20,9 @@ uniform DropletPhase uDroplets;
 #ifdef WELKIN_MIE
 uniform sampler2D uMieDroplets;   // red, green, blue by the scattering angle, from 0 to pi (welkin/optics/mie_droplets.h)
 #endif
+#ifdef WELKIN_RAIN
+uniform sampler2D uRainPhase;     // the same of rain (welkin/optics/rain_phase.h)
+#endif
 uniform float uStepNearM;         // smallest step
 uniform float uStepShare;         // step as a share of the distance
 uniform float uStepLong;          // the longest step through clear air, in those of the above
@@ -52,6 +55,9 @@ struct FirstPhases {
   float ice;
 #ifdef WELKIN_MIE
   vec3 beyondFit;       // what Mie's theory has for droplets, less the fit
+#endif
+#ifdef WELKIN_RAIN
+  vec3 rain;            // what rain has, less the fit
 #endif
 };
 
@@ -98,6 +104,12 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float ice = point.ice / point.extinction;
   PhasePeak droplets = dropletPeak(uDroplets);
+  float fit = 1.0 - ice;  // of the droplets
+#ifdef WELKIN_RAIN
+  float rain = point.rain / point.extinction;
+  fit -= rain;
+  droplets.share *= fit / max(1.0 - ice, 1e-4);  // rain has no such peak
+#endif
   CloudPhase phase = CloudPhase(mix(phases.droplets, phases.ice, ice),
                                 PhasePeak(mix(droplets.share, kIcePeakShare, ice), mix(droplets.g, kIcePeakG, ice)));
   vec4 place = point.place / point.extinction;
@@ -108,7 +120,10 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   LightWeights weights = lightWeights(depths, view.cosSun, view.height);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
-  sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
+  sun += fit * exp(-depths.toSun) * phases.beyondFit;
+#endif
+#ifdef WELKIN_RAIN
+  sun += rain * exp(-depths.toSun) * phases.rain;
 #endif
 #ifdef WELKIN_SHEETS
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
@@ -286,17 +301,25 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
 #define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0)
 #endif
 
-// Of droplets and of ice.
+#if defined(WELKIN_MIE) || defined(WELKIN_RAIN)
+// By the angle's tangent, as cosines know little of those near the glory; ends are middles of texels.
+vec3 phaseOfTable(sampler2D table, vec3 dir, float cosSun) {
+  float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;
+  float texels = float(textureSize(table, 0).x);
+  return vec3(textureLod(table, vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5), 0.0));
+}
+#endif
+
+// Of droplets, of ice and of rain.
 FirstPhases cloudPhases(vec3 dir, float cosSun) {
   FirstPhases phases;
   phases.droplets = phaseDroplet(cosSun, uDroplets);
   phases.ice = phaseIce(cosSun);
 #ifdef WELKIN_MIE
-  // The angle by its tangent, as cosines know little of those near the glory; ends are middles of texels.
-  float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;
-  float texels = float(textureSize(uMieDroplets, 0).x);
-  vec2 at = vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5);
-  phases.beyondFit = vec3(textureLod(uMieDroplets, at, 0.0)) - phases.droplets;
+  phases.beyondFit = phaseOfTable(uMieDroplets, dir, cosSun) - phases.droplets;
+#endif
+#ifdef WELKIN_RAIN
+  phases.rain = phaseOfTable(uRainPhase, dir, cosSun) - phases.droplets;
 #endif
   return phases;
 }

@@ -15,17 +15,21 @@
 #include "welkin/reference/cloud_density.h"
 #include "welkin/reference/majorant_grid.h"
 #include "welkin/reference/sphere.h"
+#include "welkin/scene/rain_shafts.h"
 
 namespace welkin::reference {
 
 class CloudMedium {
  public:
-  // field: outlives this. layers: indices of those that are traced; ice: whether a layer of the field is.
-  CloudMedium(const field::CloudField& field, const std::vector<int>& layers, const std::vector<bool>& ice);
+  // field: outlives this. layers: indices of those that are traced; matter: of each layer of the field, those
+  // that are not in it having droplets.
+  using Matter = scene::CloudMatter;
+  CloudMedium(const field::CloudField& field, const std::vector<int>& layers,
+              const std::vector<Matter>& matter);
 
   struct Collision {
     double t = 0.0;  // along the ray
-    bool ice = false;
+    Matter matter = Matter::kDroplets;
   };
   // Rays end at the ground, or at `end` before it.
   static constexpr double kToGround = std::numeric_limits<double>::infinity();
@@ -44,7 +48,7 @@ class CloudMedium {
 
  private:
   struct Point {
-    float extinction = 0.0f, ice = 0.0f;  // all, and the ice of it
+    float extinction = 0.0f, ice = 0.0f, rain = 0.0f;  // all, and what of it is ice, and rain
   };
   using Bounds = MajorantGrid::Bounds;
   Point pointIn(unsigned layers, const glm::dvec3& p) const;
@@ -55,7 +59,7 @@ class CloudMedium {
   void walk(const Ray& ray, double end, F&& f) const;
 
   CloudDensity density_;
-  unsigned ice_ = 0;  // bit i for the field's layer i
+  unsigned ice_ = 0, rain_ = 0;  // bit i for the field's layer i
   Sphere earth_;
   std::optional<MajorantGrid> grid_;  // none: no layers
 };

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/reference/cloud_phases.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "welkin/core/units.h"
 #include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
+#include "welkin/optics/rain_phase.h"
 #include "welkin/reference/directions.h"
 
 namespace welkin::reference {
@@ -22,6 +26,23 @@ PhaseSampler dropletPhase(double diameterUm, DropletModel model) {
 
 PhaseSampler icePhase() {
   return PhaseSampler::tabulated([](double c) { return optics::phaseIce(static_cast<float>(c)); });
+}
+
+RainPhase::RainPhase()
+    : table_(optics::rainPhase()), mean_(PhaseSampler::tabulated([this](double c) {
+        const glm::dvec3 p = density(c);
+        return (p.x + p.y + p.z) / 3.0;
+      })) {}
+
+glm::dvec3 RainPhase::density(double cosine) const {
+  const double at = std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi * (table_.width - 1);
+  const int i = std::min(static_cast<int>(at), table_.width - 2);
+  glm::dvec3 p;
+  for (int c = 0; c < 3; ++c) {
+    const auto a = static_cast<double>(table_.at(i, 0, c)), b = static_cast<double>(table_.at(i + 1, 0, c));
+    p[c] = a + (at - i) * (b - a);
+  }
+  return p;
 }
 
 PhaseSampler dropletPeak(const PhaseSampler& droplets) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 
+#include "welkin/core/image.h"
 #include "welkin/core/random.h"
 #include "welkin/optics/phase.h"
 #include "welkin/reference/phase_sampler.h"
@@ -17,6 +18,19 @@ using optics::DropletModel;  // Mie's: mean of three wavelengths, without colour
 
 PhaseSampler dropletPhase(double diameterUm, DropletModel model);
 PhaseSampler icePhase();  // as shaders/lib/march.glsl has it
+
+// Rain scatters colours by different angles. Directions are drawn by the mean of the three.
+class RainPhase {
+ public:
+  RainPhase();
+  const PhaseSampler& mean() const { return mean_; }
+  // 1/sr, of red, green and blue: that of optics/rain_phase.h.
+  glm::dvec3 density(double cosine) const;
+
+ private:
+  Image<float> table_;
+  PhaseSampler mean_;
+};
 
 // The part of the droplets' phase function that is large, by itself; its integral is its share of all they
 // scatter. What it leaves is nowhere above 0.3 / sr.

@@ -35,7 +35,7 @@ double CloudSource::byPeaks(const glm::dvec3& p, const glm::dvec3& view, bool is
   while (chain.count > 0) {
     const Ray ray{at, chain.ways[--chain.count]};
     const auto collision = medium_.collide(ray, CloudMedium::kToGround, random);
-    if (!collision || collision->ice) return 0.0;
+    if (!collision || collision->matter == CloudMedium::Matter::kIce) return 0.0;
     at = ray.at(collision->t);
   }
   const Ray ray{at, toSun_};
@@ -54,12 +54,13 @@ CloudSourceSample CloudSource::trace(const glm::dvec3& p, const glm::dvec3& view
       break;
     }
     const glm::dvec3 at = ray.at(collision->t);
-    const PhaseSampler& phase = collision->ice ? ice_ : droplets_;
+    const bool inIce = collision->matter == CloudMedium::Matter::kIce;
+    const PhaseSampler& phase = inIce ? ice_ : droplets_;
     const double c = glm::dot(ray.way, toSun_);
-    const double value = phase.density(c) - (collision->ice ? 0.0 : peak_.integral() * peak_.density(c));
+    const double value = phase.density(c) - (inIce ? 0.0 : peak_.integral() * peak_.density(c));
     const Ray sunward{at, toSun_};
     sample.sun += value * medium_.transmittance(sunward, CloudMedium::kToGround, random);
-    sample.sun += byPeaks(at, ray.way, collision->ice, 0.0, random);
+    sample.sun += byPeaks(at, ray.way, inIce, 0.0, random);
     ray = {at, turned(ray.way, phase.sampleCosine(unit(random)), 2.0 * kPi * unit(random))};
   }
   return sample;

@@ -13,6 +13,7 @@
 #include "welkin/core/glsl.h"
 #include "welkin/optics/phase.h"
 #include "welkin/reference/cloud_medium.h"
+#include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/directions.h"
 #include "welkin/reference/metaball_medium.h"
 #include "welkin/reference/phase_sampler.h"
@@ -75,11 +76,11 @@ MetaballMedium tracedMetaballs(const scene::SkyState& state) {
   return MetaballMedium(balls);
 }
 
-std::vector<bool> iceOf(const scene::SkyState& state) {
-  std::vector<bool> ice;
+std::vector<scene::CloudMatter> matterOf(const scene::SkyState& state) {
+  std::vector<scene::CloudMatter> matter;
   for (std::size_t i = 0; i < state.clouds->layers().size(); ++i)
-    ice.push_back(scene::isIceInField(state.scene, state.weather, i));
-  return ice;
+    matter.push_back(scene::matterInField(state.scene, state.weather, i));
+  return matter;
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ struct SkyTracer::Impl {
         seed(settings.seed),
         projector(scene::projectorOf(s)),
         earth(s.clouds->earthRadiusM()),
-        clouds(*s.clouds, tracedLayers(s), iceOf(s)),
+        clouds(*s.clouds, tracedLayers(s), matterOf(s)),
         balls(tracedMetaballs(s)),
         air(s.atmosphere->uniforms()),
         lights(s, air, earth),
@@ -117,6 +118,7 @@ struct SkyTracer::Impl {
   Air air;
   SkyLights lights;
   PhaseSampler droplets, ice, molecules, isotropic;
+  RainPhase rain;
   PhaseSampler peak;  // of the droplets: see gather()
   glm::dvec3 airglow;
   double airglowHeight;
@@ -179,11 +181,16 @@ struct SkyTracer::Impl {
   std::optional<Collision> collide(const Ray& ray, Random& random) const {
     std::optional<Collision> collision;
     if (const auto c = clouds.collide(ray, CloudMedium::kToGround, random))
-      collision = {c->t, c->ice ? &ice : &droplets, 1.0};
+      collision = {c->t, &phaseOf(c->matter), 1.0};
     if (balls.empty()) return collision;
     if (const auto b = balls.collide(ray, collision ? collision->t : end(ray), random))
       collision = {b->t, &phaseOf(b->phase), b->albedo};
     return collision;
+  }
+  const PhaseSampler& phaseOf(scene::CloudMatter matter) const {
+    return matter == scene::CloudMatter::kIce    ? ice
+           : matter == scene::CloudMatter::kRain ? rain.mean()
+                                                 : droplets;
   }
   const PhaseSampler& phaseOf(scene::MetaballPhase phase) const {
     return phase == scene::MetaballPhase::kDroplets   ? droplets
@@ -295,6 +302,15 @@ void SkyTracer::Impl::scatterInCloud(Path& path, const Collision& collision, Wor
   path.throughput *= collision.albedo;
   ++work.sample.events;
   const glm::dvec3 from = path.ray.way;
+  if (&phase == &rain.mean()) {
+    gather(
+        path, p, peak.integral(), [&](const glm::dvec3& w) { return rain.density(glm::dot(from, w)); }, work);
+    const double c = phase.sampleCosine(unit(random));
+    path.throughput *= rain.density(c) / phase.density(c);
+    path.ray = {p, turned(from, c, 2.0 * kPi * unit(random))};
+    path.first = false;
+    return;
+  }
   // The first event of all has none before it that would find its peak.
   const bool whole = &phase != &droplets || path.first;
   gather(

@@ -97,7 +97,7 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
     defines_ = shading::sheetDefines(layout_, onRay, kAboveAll);
     order_ = shading::sheetUniforms(layout_, onRay, {}, kAboveAll);
   }
-  if (state.scene.droplets == optics::DropletModel::kMie) defines_.emplace_back("WELKIN_MIE", "1");
+  shading::addPhaseDefines(state, defines_);
   marching_ = &marches_.with(defines_);
   const shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
   reach_ = 1.0f / (3.0f * (layout_.bands.empty() ? 1e-4f : settings.noise));

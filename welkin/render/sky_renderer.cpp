@@ -132,7 +132,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
-  if (state.scene.droplets == optics::DropletModel::kMie) defines.emplace_back("WELKIN_MIE", "1");
+  shading::addPhaseDefines(state, defines);
   if (cloudLight == CloudLight::kSingle) defines.emplace_back("WELKIN_SINGLE_SCATTERING", "1");
   if (cloudLight == CloudLight::kOctaves) defines.emplace_back("WELKIN_OCTAVES_OF_SCATTERING", "1");
   gpu::Program& p = sky.with(defines);

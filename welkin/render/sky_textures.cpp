@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "welkin/optics/mie_droplets.h"
+#include "welkin/optics/rain_phase.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/sky/atmosphere.h"
@@ -45,7 +47,9 @@ void SkyTextures::upload(const scene::SkyState& state, const sky::SkyTables& tab
   put(through_, tables.aerialTransmittance, kHalf);
 }
 
-void SkyTextures::updateDroplets(const scene::SkyState& state) {
+void SkyTextures::updatePhases(const scene::SkyState& state) {
+  if (rainPhase_.id() == 0 && scene::hasRain(state.scene, state.weather))
+    put(rainPhase_, optics::rainPhase(), kFull);
   const double diameterUm = scene::dropletDiameterUm(state.weather);
   if (state.scene.droplets != optics::DropletModel::kMie || mieDiameterUm_ == diameterUm) return;
   put(mieDroplets_, optics::mieDroplets(diameterUm), kFull);
@@ -61,7 +65,7 @@ void SkyTextures::updateLights(const scene::SkyState& state) {
 }
 
 void SkyTextures::update(const scene::SkyState& state) {
-  updateDroplets(state);
+  updatePhases(state);
   upload(state, sky::makeSkyTables(*state.atmosphere, eyeAltitude(state), state.lights));
   updateLights(state);
   shown_.reset();
@@ -113,7 +117,7 @@ void SkyTextures::prepareNext(scene::SkyState& state, double before) {
 }
 
 void SkyTextures::updateLive(scene::SkyState& state) {
-  updateDroplets(state);
+  updatePhases(state);
   if (atmosphere_ != state.atmosphere || eyeAltitudeM_ != eyeAltitude(state)) {
     for (Key& key : keys_) key.name.reset();
     ahead_.name.reset();
@@ -146,6 +150,7 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uKeyLight", keyLight_);
   if (secondLight_.id() != 0) program.bind("uSecondLight", secondLight_);
   if (mieDiameterUm_) program.bind("uMieDroplets", mieDroplets_);
+  if (rainPhase_.id() != 0) program.bind("uRainPhase", rainPhase_);
   program.bind("uAerialInscatter", inscatter_);
   program.bind("uAerialTransmittance", through_);
 }

@@ -57,7 +57,7 @@ class SkyTextures {
   void make(const scene::SkyState& state, KeyName name, Key& key);
   void start(const scene::SkyState& state, KeyName name, double startedAt);
   void prepareNext(scene::SkyState& state, double before);
-  void updateDroplets(const scene::SkyState& state);
+  void updatePhases(const scene::SkyState& state);
   void updateLights(const scene::SkyState& state);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
 
@@ -72,7 +72,7 @@ class SkyTextures {
   gpu::Texture2D transmittance_, skyView_, keyLight_, secondLight_;
   gpu::Texture3D inscatter_, through_;
   std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of
-  gpu::Texture2D mieDroplets_;
+  gpu::Texture2D mieDroplets_, rainPhase_;
   struct Stars {
     gpu::Texture2D texture;
     int cells = 0;

@@ -26,10 +26,11 @@ struct Falling {
   double speedMps;
   double evaporatesM;  // what 1 mm/h falls through before it is gone; grows as the square root of the rate
 };
-// Drops of J. S. Marshall and W. McK. Palmer 1948, "The distribution of raindrops with size", that hide twice
-// their cross-section: pi N0 / Lambda^3, N0 = 8e6 / m^4, Lambda = 4100 rate^-0.21 / m. Speed of drops of 2 mm
-// (R. Gunn and G. D. Kinzer 1949).
-constexpr Falling kRain = {3.65e-4, 0.63, 6.0, 1300.0};
+// The cross-section of the drops of J. S. Marshall and W. McK. Palmer 1948, "The distribution of raindrops
+// with size": pi N0 / (2 Lambda^3), N0 = 8e6 / m^4, Lambda = 4100 rate^-0.21 / m. (They take as much light
+// again, but turn that by hundredths of a degree: optics/rain_phase.h.) Speed of drops of 2 mm (R. Gunn and
+// G. D. Kinzer 1949).
+constexpr Falling kRain = {1.825e-4, 0.63, 6.0, 1300.0};
 // About 1 km of visibility in 1 mm/h (R. M. Rasmussen et al. 1999, "The estimation of snowfall rate using
 // visibility").
 constexpr Falling kSnow = {3.0e-3, 0.7, 1.2, 1300.0};
@@ -62,9 +63,14 @@ bool isVolumeInField(const Scene& scene, const weather::Weather& weather, std::s
   return isVolume(scene, weather.layers[layerOfField(scene, weather, index).of]);
 }
 
-bool isIceInField(const Scene& scene, const weather::Weather& weather, std::size_t index) {
+CloudMatter matterInField(const Scene& scene, const weather::Weather& weather, std::size_t index) {
   const LayerOfField layer = layerOfField(scene, weather, index);
-  return layer.isShaft ? fallsAsSnow(weather) : isIce(weather.layers[layer.of].genus);
+  if (layer.isShaft) return fallsAsSnow(weather) ? CloudMatter::kIce : CloudMatter::kRain;
+  return isIce(weather.layers[layer.of].genus) ? CloudMatter::kIce : CloudMatter::kDroplets;
+}
+
+bool hasRain(const Scene& scene, const weather::Weather& weather) {
+  return !fallsAsSnow(weather) && rainingLayers(scene, weather).count > 0;
 }
 
 field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::Layer& layer,

@@ -26,9 +26,12 @@ struct LayerOfField {
   bool isShaft;
 };
 LayerOfField layerOfField(const Scene& scene, const weather::Weather& weather, std::size_t index);
-// Whether it is drawn as a volume, and whether of ice.
+// Whether it is drawn as a volume, and what scatters light in it.
 bool isVolumeInField(const Scene& scene, const weather::Weather& weather, std::size_t index);
-bool isIceInField(const Scene& scene, const weather::Weather& weather, std::size_t index);
+enum class CloudMatter { kDroplets, kIce, kRain };
+CloudMatter matterInField(const Scene& scene, const weather::Weather& weather, std::size_t index);
+// Whether there is a layer of rain.
+bool hasRain(const Scene& scene, const weather::Weather& weather);
 
 // The shaft beneath a layer, whose shape is settled (its threshold above all) and which lies above the
 // ground.

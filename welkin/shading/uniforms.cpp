@@ -65,15 +65,18 @@ void putAirLight(Refill& u, std::string_view owner, const scene::AirLight& light
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  std::vector<float> ice(field::kMaxLayers, 0.0f), cover = ice;
+  std::vector<float> ice(field::kMaxLayers, 0.0f), rain = ice, cover = ice;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
                          [&](const char* name, auto value) { u.emplace_back(layerMember(i, name), value); });
     const std::size_t of = scene::layerOfField(state.scene, state.weather, i).of;
-    ice[i] = scene::isIceInField(state.scene, state.weather, i) ? 1.0f : 0.0f;
+    const scene::CloudMatter matter = scene::matterInField(state.scene, state.weather, i);
+    ice[i] = matter == scene::CloudMatter::kIce ? 1.0f : 0.0f;
+    rain[i] = matter == scene::CloudMatter::kRain ? 1.0f : 0.0f;
     cover[i] = static_cast<float>(state.weather.layers[of].oktas / kOktas);
   }
   u.emplace_back("uLayerIce", ice);
+  u.emplace_back("uLayerRain", rain);
   u.emplace_back("uLayerCover", cover);
   return u;
 }
@@ -327,6 +330,11 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
                         {"WELKIN_BANDS", std::to_string(layout.bands.size())}};
   addBandDefines(layout, defines);
   return defines;
+}
+
+void addPhaseDefines(const scene::SkyState& state, ShaderDefines& defines) {
+  if (state.scene.droplets == optics::DropletModel::kMie) defines.emplace_back("WELKIN_MIE", "1");
+  if (scene::hasRain(state.scene, state.weather)) defines.emplace_back("WELKIN_RAIN", "1");
 }
 
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band) {

@@ -90,5 +90,7 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM);
 ShaderDefines bandDefines(const LightVolumeLayout& layout, int band);
 std::string layerCalls(const LightVolumeLayout& layout, int band);             // of the one and of the other
 void addBandDefines(const LightVolumeLayout& layout, ShaderDefines& defines);  // what else bands hold
+// What lib/march.glsl needs tables for: droplets by Mie's theory, rain.
+void addPhaseDefines(const scene::SkyState& state, ShaderDefines& defines);
 
 }  // namespace welkin::shading

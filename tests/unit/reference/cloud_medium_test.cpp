@@ -33,10 +33,10 @@ std::vector<int> allLayers(const field::CloudField& field) {
 }
 
 CloudMedium mediumOf(const scene::SkyState& state) {
-  std::vector<bool> ice;
-  ice.reserve(state.weather.layers.size());
-  for (const weather::Layer& layer : state.weather.layers) ice.push_back(scene::isIce(layer.genus));
-  return CloudMedium(*state.clouds, allLayers(*state.clouds), ice);
+  std::vector<scene::CloudMatter> matter;
+  for (std::size_t i = 0; i < state.clouds->layers().size(); ++i)
+    matter.push_back(scene::matterInField(state.scene, state.weather, i));
+  return CloudMedium(*state.clouds, allLayers(*state.clouds), matter);
 }
 
 // What bounds are compared with: the field itself, layer by layer, at a cloud position.

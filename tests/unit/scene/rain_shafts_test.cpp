@@ -84,8 +84,8 @@ TEST(RainShafts, AreAsDenseAsTheRainThatFalls) {
     float most = 0.0f;
     eachPlace(cloudsOf(storm(rate)), 900.0f,
               [&](float extinction, glm::vec2) { most = std::max(most, extinction); });
-    // Marshall and Palmer's drops, geometric optics: 3.65e-4 /m at 1 mm/h.
-    const double wanted = 3.65e-4 * std::pow(rate, 0.63);
+    // The cross-section of Marshall and Palmer's drops: 1.825e-4 /m at 1 mm/h.
+    const double wanted = 1.825e-4 * std::pow(rate, 0.63);
     EXPECT_LE(most, 1.0001 * wanted);
     EXPECT_GT(most, 0.6 * wanted);
   }
@@ -153,12 +153,16 @@ TEST(RainShafts, AreOfVolumesAndOfTwoAtMost) {
   EXPECT_TRUE(layerOfField(scene, weather, 4).isShaft);
   EXPECT_TRUE(isVolumeInField(scene, weather, 4));
   EXPECT_FALSE(isVolumeInField(scene, weather, 0));
-  EXPECT_FALSE(isIceInField(scene, weather, 4));
+  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kRain);
+  EXPECT_EQ(matterInField(scene, weather, 3), CloudMatter::kDroplets);
+  EXPECT_TRUE(hasRain(scene, weather));
   weather.precipitation = weather::PrecipitationKind::kSnow;
-  EXPECT_TRUE(isIceInField(scene, weather, 4));
+  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kIce);
+  EXPECT_FALSE(hasRain(scene, weather));
   weather.precipitation = weather::PrecipitationKind::kNone;
   weather.temperatureC = -11.0;
-  EXPECT_TRUE(isIceInField(scene, weather, 4));
+  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kIce);
+  EXPECT_FALSE(hasRain(scene, weather));
   weather.layers[3].baseM = 0.0;  // nothing falls out of fog
   EXPECT_EQ(rainingLayers(scene, weather).count, 0u);
 }
