@@ -35,6 +35,7 @@
 #include "welkin/render/light_volume_pass.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/scene/scene_file.h"
 #include "welkin/shading/fluence_layout.h"
 #include "welkin/shading/uniforms.h"
@@ -340,8 +341,8 @@ int run(int argc, char** argv) {
     volume.texels = pass.volume().read();
     volume.fluence = pass.fluence().read();
 
-    const std::vector<bool> ice{scene::isIce(layer.genus)};
-    const reference::CloudMedium medium(*state.clouds, {0}, ice);
+    const std::vector matter{scene::matterInField(state.scene, state.weather, 0)};
+    const reference::CloudMedium medium(*state.clouds, {0}, matter);
     const auto droplets =
         reference::dropletPhase(scene::dropletDiameterUm(state.weather), reference::DropletModel::kFit);
     const auto crystals = reference::icePhase();
@@ -399,10 +400,11 @@ int run(int argc, char** argv) {
           row[kCosSun] = static_cast<float>(glm::dot(view, sun));
           row[kViewHeight] = static_cast<float>(view.z);
           row[kSunHeight] = static_cast<float>(sun.z);
-          row[kIce] = hit->ice ? 1.0f : 0.0f;
+          const bool inIce = hit->matter == scene::CloudMatter::kIce;
+          row[kIce] = inIce ? 1.0f : 0.0f;
           row[kCover] = static_cast<float>(layer.oktas / kOktas);
           row[kDirect] = static_cast<float>(std::exp(-clouds.depth({p, sun}, 60e3, 30.0)));
-          row[kPhase] = static_cast<float>((hit->ice ? crystals : droplets).density(glm::dot(view, sun)));
+          row[kPhase] = static_cast<float>((inIce ? crystals : droplets).density(glm::dot(view, sun)));
           const glm::vec4 behind = volume.at(q + shared::kBehindM * glm::vec3(view));
           row[kBehindToSun] = behind.x;
           row[kBehindFromSun] = behind.z;
@@ -413,14 +415,14 @@ int run(int argc, char** argv) {
           row[kDepth] = body.topM - body.baseM;
           row[kHeight] = (q.z - body.baseM) / row[kDepth];
           row[kLayerExtinction] = body.extinction;
-          row[kPeakShare] = hit->ice ? shared::kIcePeakShare : peak.share;
-          row[kPeakG] = hit->ice ? shared::kIcePeakG : peak.g;
+          row[kPeakShare] = inIce ? shared::kIcePeakShare : peak.share;
+          row[kPeakG] = inIce ? shared::kIcePeakG : peak.g;
           row[kFluence] = volume.fluenceAt(q);
           row[kFluenceAhead] = volume.fluenceAt(q + shared::kAheadM * glm::vec3(view));
           double lit = 0.0;
           int above = 0, below = 0;
           for (int k = 0; k < paths; ++k) {
-            const reference::CloudSourceSample s = source.trace(p, view, hit->ice, r);
+            const reference::CloudSourceSample s = source.trace(p, view, inIce, r);
             lit += s.sun;
             above += s.toSky ? 1 : 0;
             below += s.toGround ? 1 : 0;

@@ -16,6 +16,7 @@
 WELKIN_CONST float kSimilarity = 1.0f - kDropletAsymmetry;
 WELKIN_CONST float kForwardLobe = 1.62f;               // weight and
 WELKIN_CONST float kForwardLobeG = 0.593f;             // mean cosine of the lobe of light scattered a few times
+WELKIN_CONST float kRainFew = 1.35f;                   // weight of what rain has in the place of that lobe: its phase function twice
 WELKIN_CONST float kDiffuseWeight = 1.06f;             // of the Eddington radiance as a source
 WELKIN_CONST float kDiffuseG = 0.594f;                 // share of its part along the flux; up to 2/3 no direction is dark
 WELKIN_CONST float kDiffuseOnset = 0.32f;              // per optical depth: how soon a cloud is thick enough for diffuse light
@@ -50,9 +51,13 @@ WELKIN_FN float cloudSunSourceOctaves(CloudDepths d, float phase, float cosSun) 
   return source;
 }
 
-// Scattered radiance per unit extinction and unit sun illuminance, 1/sr. phase: the first scattering's, 1/sr; cosSun: of the
-// angle between the direction of view and the sun; viewHeight, sunHeight: sines of their elevations.
-WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float viewHeight, float sunHeight) {
+// The lobe of light scattered a few times.
+WELKIN_FN float cloudForwardLobe(float cosSun) { return kForwardLobe * phaseHenyeyGreenstein(cosSun, kForwardLobeG); }
+
+// Scattered radiance per unit extinction and unit sun illuminance, 1/sr. phase: the first scattering's, 1/sr; few: cloudForwardLobe(), or
+// what matter other than droplets has in its place; cosSun: of the angle between the direction of view and the sun; viewHeight, sunHeight:
+// sines of their elevations.
+WELKIN_FN float cloudSunSourceOf(CloudDepths d, float phase, float few, float cosSun, float viewHeight, float sunHeight) {
 #if defined(WELKIN_SINGLE_SCATTERING)
   return cloudSunSourceSingle(d, phase);
 #elif defined(WELKIN_OCTAVES_OF_SCATTERING)
@@ -74,9 +79,12 @@ WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float v
   float flux = mu * (transmitted - beamHere);  // of diffuse light away from the sun
   float diffuse = kDiffuseWeight * max(fluence + 3.0f * kDiffuseG * flux * facing, 0.0f) / (4.0f * pi);
   diffuse *= 1.0f - exp(-kDiffuseOnset * mu * (d.toSun + d.fromSun));
-  float forward = kForwardLobe * phaseHenyeyGreenstein(cosSun, kForwardLobeG) * max(beamHere - direct, 0.0f);
+  float forward = few * max(beamHere - direct, 0.0f);
   return phase * direct + forward + diffuse;
 #endif
+}
+WELKIN_FN float cloudSunSource(CloudDepths d, float phase, float cosSun, float viewHeight, float sunHeight) {
+  return cloudSunSourceOf(d, phase, cloudForwardLobe(cosSun), cosSun, viewHeight, sunHeight);
 }
 
 WELKIN_CONST float kTiltAcross = 0.3f;                 // what a lump has of a slab's difference between its sides

@@ -57,7 +57,7 @@ struct FirstPhases {
   vec3 beyondFit;       // what Mie's theory has for droplets, less the fit
 #endif
 #ifdef WELKIN_RAIN
-  vec3 rain;            // what rain has, less the fit
+  vec4 rain;            // the first scattering's by colour, and (w) of light scattered twice
 #endif
 };
 
@@ -82,6 +82,19 @@ vec2 bandStretch(vec2 band, bool up, float dirZ) {
   return vec2(max(outer.x, 0.0), innerHit ? inner.x : outer.y);
 }
 
+#ifdef WELKIN_RAIN
+// Depths of droplets that would scatter light as often as these do, where a share is rain; it is so for no more of them than the rain from
+// the place to top and base can come to. place: as CloudPoint's, for each extinction.
+CloudDepths depthsAsOfDroplets(CloudDepths d, float rain, vec4 place) {
+  float more = rain * ((1.0 - kRainAsymmetry) / kSimilarity - 1.0);
+  float above = (1.0 - place.y) * place.z * place.w, below = place.y * place.z * place.w;
+  float slant = 1.0 / max(abs(uKeyDirection.z), 0.05);
+  vec2 alongSun = slant * (uKeyDirection.z >= 0.0 ? vec2(above, below) : vec2(below, above));
+  return CloudDepths(d.toSun + more * min(d.toSun, alongSun.x), d.fromSun + more * min(d.fromSun, alongSun.y),
+                     d.up + more * min(d.up, above), d.down + more * min(d.down, below));
+}
+#endif
+
 // Source function at q: scattered radiance per unit extinction, cd/m2.
 vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, FirstPhases phases, CloudView view, vec3 dir, float dither) {
   // Towards the sun: first through the point's own density, then through samples at distances that grow
@@ -104,26 +117,41 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   depths.toSun = near + cloudDepthsAt(uLightVolume, q + uKeyDirection * done).toSun;
   float ice = point.ice / point.extinction;
   PhasePeak droplets = dropletPeak(uDroplets);
-  float fit = 1.0 - ice;  // of the droplets
-#ifdef WELKIN_RAIN
-  float rain = point.rain / point.extinction;
-  fit -= rain;
-  droplets.share *= fit / max(1.0 - ice, 1e-4);  // rain has no such peak
-#endif
   CloudPhase phase = CloudPhase(mix(phases.droplets, phases.ice, ice),
                                 PhasePeak(mix(droplets.share, kIcePeakShare, ice), mix(droplets.g, kIcePeakG, ice)));
   vec4 place = point.place / point.extinction;
   float cover = point.cover / point.extinction;
+#ifdef WELKIN_RAIN
+  // The first scattering by rain is its table's, and there is no peak. For the others there are the closed forms: it is no cloud, and the
+  // network has not seen it.
+  float rain = point.rain / point.extinction;
+  phase.first -= rain * phases.droplets;
+  phase.peak.share *= 1.0 - rain;
+  CloudScattering scattered;
+  if (rain > 0.5) {
+    CloudDepths alike = depthsAsOfDroplets(depths, rain, place);
+    scattered = CloudScattering(cloudSunSourceOf(alike, 0.0, kRainFew * phases.rain.w, view.cosSun, dir.z, uKeyDirection.z),
+                                cloudSkyShares(alike));
+    scattered.sun += phase.first * exp(-depths.toSun);
+  } else {
+    scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
+  }
+#else
   CloudScattering scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
+#endif
   // Light from above comes into a deck through its top, and into a cloud among others through its sides.
   float enteredM = mix(q.z, q.z + (1.0 - place.y) * place.z, cover * cover * cover * cover);
   LightWeights weights = lightWeights(depths, view.cosSun, view.height);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
-  sun += fit * exp(-depths.toSun) * phases.beyondFit;
+#ifdef WELKIN_RAIN
+  sun += (1.0 - ice - rain) * exp(-depths.toSun) * phases.beyondFit;
+#else
+  sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
+#endif
 #endif
 #ifdef WELKIN_RAIN
-  sun += rain * exp(-depths.toSun) * phases.rain;
+  sun += rain * exp(-depths.toSun) * vec3(phases.rain);
 #endif
 #ifdef WELKIN_SHEETS
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
@@ -303,10 +331,10 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
 
 #if defined(WELKIN_MIE) || defined(WELKIN_RAIN)
 // By the angle's tangent, as cosines know little of those near the glory; ends are middles of texels.
-vec3 phaseOfTable(sampler2D table, vec3 dir, float cosSun) {
+vec4 phaseOfTable(sampler2D table, vec3 dir, float cosSun) {
   float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;
   float texels = float(textureSize(table, 0).x);
-  return vec3(textureLod(table, vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5), 0.0));
+  return textureLod(table, vec2((angle * (texels - 1.0) + 0.5) / texels, 0.5), 0.0);
 }
 #endif
 
@@ -316,10 +344,10 @@ FirstPhases cloudPhases(vec3 dir, float cosSun) {
   phases.droplets = phaseDroplet(cosSun, uDroplets);
   phases.ice = phaseIce(cosSun);
 #ifdef WELKIN_MIE
-  phases.beyondFit = phaseOfTable(uMieDroplets, dir, cosSun) - phases.droplets;
+  phases.beyondFit = vec3(phaseOfTable(uMieDroplets, dir, cosSun)) - phases.droplets;
 #endif
 #ifdef WELKIN_RAIN
-  phases.rain = phaseOfTable(uRainPhase, dir, cosSun) - phases.droplets;
+  phases.rain = phaseOfTable(uRainPhase, dir, cosSun);
 #endif
   return phases;
 }

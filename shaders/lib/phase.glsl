@@ -5,6 +5,7 @@
 
 WELKIN_CONST float kInvFourPi = 0.0795774715f;  // 1 / (4 pi)
 WELKIN_CONST float kDropletAsymmetry = 0.86f;      // mean cosine of scattering by cloud droplets, for closed forms
+WELKIN_CONST float kRainAsymmetry = 0.765f;        // of scattering by drops of rain, diffraction apart (welkin/optics/rain_phase.h)
 WELKIN_CONST float kDropletAside = 0.33f;          // share that droplets turn by more than some degrees: what shades the air behind them
 
 WELKIN_FN float phaseIsotropic() { return kInvFourPi; }

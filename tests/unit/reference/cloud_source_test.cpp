@@ -25,7 +25,7 @@ TEST(CloudSource, IsWhatTheTracerSees) {
   for (const Genus genus : {Genus::kCumulus, Genus::kCirrus}) {
     const scene::SkyState state = testing::airlessSky(testing::cloudyScene(35.0, {genus}, 5.0), kLux);
     const SkyTracer tracer(state, {});
-    const CloudMedium medium(*state.clouds, {0}, {scene::isIce(genus)});
+    const CloudMedium medium(*state.clouds, {0}, {scene::matterInField(state.scene, state.weather, 0)});
     const auto droplets = dropletPhase(scene::dropletDiameterUm(state.weather), DropletModel::kFit);
     const auto ice = icePhase();
     const glm::dvec3 sun(state.lights[0].direction);
@@ -42,9 +42,10 @@ TEST(CloudSource, IsWhatTheTracerSees) {
       const auto hit = medium.collide(ray, 400e3, random);
       if (!hit) continue;
       const glm::dvec3 p = ray.at(hit->t);
-      const double first = (hit->ice ? ice : droplets).density(glm::dot(way, sun)) *
+      const bool inIce = hit->matter == scene::CloudMatter::kIce;
+      const double first = (inIce ? ice : droplets).density(glm::dot(way, sun)) *
                            medium.transmittance({p, sun}, 400e3, random);
-      const double there = first + source.trace(p, way, hit->ice, random).sun;
+      const double there = first + source.trace(p, way, inIce, random).sun;
       single += first;
       b += there, b2 += there * there;
     }
