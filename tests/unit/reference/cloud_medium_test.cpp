@@ -14,7 +14,7 @@
 #include "tests/testing/skies.h"
 #include "welkin/core/parallel.h"
 #include "welkin/reference/directions.h"
-#include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::reference {

@@ -12,6 +12,7 @@
 #include "welkin/reference/directions.h"
 #include "welkin/reference/sky_tracer.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/rain_shafts.h"
 
 namespace welkin::reference {
 namespace {

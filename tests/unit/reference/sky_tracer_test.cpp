@@ -20,6 +20,7 @@
 #include "welkin/reference/sky_film.h"
 #include "welkin/reference/slab_tracer.h"
 #include "welkin/scene/cloud_shapes.h"
+#include "welkin/scene/rain_shafts.h"
 
 namespace welkin::reference {
 namespace {
@@ -85,12 +86,14 @@ scene::SkyState levelSky(const scene::Scene& scene, double depth) {
   return state;
 }
 
-// In uniform light from everywhere what only scatters cannot be seen: neither droplets, ice, clear air nor a
-// white ground.
+// In uniform light from everywhere what only scatters cannot be seen: neither droplets, ice, rain, clear air
+// nor a white ground.
 TEST(SkyTracer, WhiteFurnace) {
   scene::Scene s = testing::cloudyScene(-30.0, {Genus::kCumulus, Genus::kCirrus}, 6.0);
   s.ground.albedo = {1.0, 1.0, 1.0};
+  s.layers[0].rainMmPerH = 20.0;
   scene::SkyState state = scene::buildSky(s, 0.0);
+  ASSERT_EQ(scene::matterInField(state.scene, state.weather, 2), scene::CloudMatter::kRain);
   withEvenPlacement(state);
   for (sky::Light& light : state.lights) light.illuminance = glm::vec3(0.0f);
   for (const bool air : {false, true}) {
