@@ -8,11 +8,15 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
+#include "welkin/gpu/context.h"
 #include "welkin/optics/rain_phase.h"
 #include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/sky_tracer.h"
+#include "welkin/render/live_sky.h"
+#include "welkin/render/live_volumes.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
@@ -135,6 +139,56 @@ TEST(Rainbow, HasTheTablesPhaseFunction) {
       EXPECT_NEAR(more[c], expected, 0.15 * expected + 0.05 * band[c]) << outDeg << " degrees, colour " << c;
     }
   }
+}
+
+// In somebody's frame loop as in the still: a storm's rain, where red is most of the light 42 degrees from
+// the point opposite to the sun.
+TEST(Rainbow, IsInLiveFramesAsInStills) {
+  constexpr int kWidth = 96, kHeight = 54;
+  constexpr double kFov = 24.0;
+  scene::Scene s;
+  s.time = parseUtcTime("2026-07-21T17:15:00Z");
+  s.seed = 30;
+  s.place = {45.0, 8.0, 0.0};
+  weather::Layer storm = weather::typicalLayer(Genus::kCumulonimbus, 45.0);
+  storm.baseM = 2500.0;
+  storm.topM = 10500.0;
+  storm.oktas = 4.0;
+  storm.rainMmPerH = 20.0;
+  s.layers = {storm};
+  s.output.quality = scene::Quality::kMedium;
+  const sky::Body sun = scene::lightsAt(s, 0.0).ephemeris.sun;
+  s = testing::looking(testing::sized(s, kWidth, kHeight), sun.azimuthDeg - 180.0, 42.0 - sun.elevationDeg,
+                       kFov);
+  const scene::SkyState state = scene::buildSky(s, 0.0);
+  const Image<float> still = SkyRenderer().draw(state).luminance;
+
+  gpu::Context context{{.debug = true}};
+  context.makeCurrent();
+  const gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
+  const gpu::Framebuffer target{texture};
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const shading::View view = shading::viewOf(state);
+  for (int i = 0; i < 12 * LiveVolumes::kFramesInRound; ++i) sky.draw(view, target);
+  const Image<float> live = target.readPicture(0, 3);
+  EXPECT_LT(testing::relativeDifference(live, still), 0.03);
+  for (const Image<float>& picture : {live, still}) {
+    double most = 0.0, at = 0.0;
+    for (int y = 0; y < kHeight; ++y) {
+      double red = 0.0, blue = 0.0;
+      for (int x = kWidth / 2 - 4; x < kWidth / 2 + 4; ++x) {
+        red += static_cast<double>(picture.at(x, y, 0));
+        blue += static_cast<double>(picture.at(x, y, 2));
+      }
+      if (red / blue <= most) continue;
+      most = red / blue;
+      at = 42.0 - degrees(std::atan(std::tan(radians(0.5 * kFov)) * (2.0 * (y + 0.5) - kHeight) / kWidth));
+    }
+    EXPECT_NEAR(at, 42.0, 0.4);
+    EXPECT_GT(most, 1.2);
+  }
+  EXPECT_TRUE(context.takeErrors().empty());
 }
 
 TEST(Rainbow, IsNotInSnow) {
