@@ -23,7 +23,7 @@ for scene in clear_noon fair_weather_noon stratocumulus_golden_hour overcast_rai
 done
 for scene in above_the_clouds sunset cirrus blue_hour starry_night glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture rain "$here/rain.toml" --size 960x540
-picture rainbow "$here/rainbow.toml" --size 960x540
+for scene in rainbow rainbow_report; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture thunderstorm_day "$demo/thunderstorm_night.toml" --time 2026-09-26T09:00:00Z --size 960x540
 picture congestus "$here/congestus.toml" --size 960x540
 picture congestus_aside "$here/congestus.toml" --look 330,14 --size 960x540
