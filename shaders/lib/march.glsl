@@ -128,7 +128,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   phase.first -= rain * phases.droplets;
   phase.peak.share *= 1.0 - rain;
   CloudScattering scattered;
-  if (rain > 0.5) {
+  if (WELKIN_SHAFTS(band) || rain > 0.5) {
     CloudDepths alike = depthsAsOfDroplets(depths, rain, place);
     scattered = CloudScattering(cloudSunSourceOf(alike, 0.0, kRainFew * phases.rain.w, view.cosSun, dir.z, uKeyDirection.z),
                                 cloudSkyShares(alike));
