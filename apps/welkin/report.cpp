@@ -17,6 +17,18 @@ Json bodyJson(const sky::Body& body) {
   return {{"azimuth_deg", body.azimuthDeg}, {"elevation_deg", body.elevationDeg}};
 }
 
+// Of those above the horizon.
+Json planetsJson(const sky::Ephemeris& ephemeris) {
+  Json planets = Json::array();
+  for (const sky::Planet& planet : ephemeris.planets) {
+    if (planet.body.elevationDeg <= 0.0) continue;
+    Json j = {{"name", planet.name}, {"magnitude", planet.magnitude}};
+    j.update(bodyJson(planet.body));
+    planets.push_back(std::move(j));
+  }
+  return planets;
+}
+
 Json coverJson(const scene::LayerCover& c) {
   return {{"requested_oktas", c.requestedOktas}, {"delivered_oktas", c.deliveredOktas}};
 }
@@ -85,6 +97,7 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   j["sun"] = bodyJson(s.ephemeris.sun);
   j["moon"] = bodyJson(s.ephemeris.moon);
   j["moon"]["illuminated_fraction"] = s.ephemeris.moonIlluminatedFraction;
+  j["planets"] = planetsJson(s.ephemeris);
   j["heading_deg"] = s.headingDeg;
   j["visibility_m"] = s.weather.visibilityM;
   j["layers"] = layersJson(s);

@@ -30,14 +30,27 @@ int runSunCommand(double latitudeDeg, double longitudeDeg, double altitudeM, con
         "{{\"time\": \"{}\", \"place\": {{\"latitude_deg\": {}, \"longitude_deg\": {}, \"altitude_m\": {}}}, "
         "\"sun\": {{\"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"illuminance_lux\": {:.1f}}}, "
         "\"moon\": {{\"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"illuminated_fraction\": {:.6f}, "
-        "\"illuminance_lux\": {:.6f}}}}}\n",
+        "\"illuminance_lux\": {:.6f}}}, \"planets\": [",
         formatUtcTime(time), latitudeDeg, longitudeDeg, altitudeM, e.sun.azimuthDeg, e.sun.elevationDeg,
         e.sunIlluminanceLux, e.moon.azimuthDeg, e.moon.elevationDeg, e.moonIlluminatedFraction,
         e.moonIlluminanceLux);
+    const char* before = "";
+    for (const sky::Planet& p : e.planets) {
+      if (p.body.elevationDeg <= 0.0) continue;
+      fmt::print(
+          "{}{{\"name\": \"{}\", \"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"magnitude\": {:.2f}}}",
+          before, p.name, p.body.azimuthDeg, p.body.elevationDeg, p.magnitude);
+      before = ", ";
+    }
+    fmt::print("]}}\n");
   } else {
-    fmt::print("sun   azimuth {:9.4f}  elevation {:8.4f} degrees\n", e.sun.azimuthDeg, e.sun.elevationDeg);
-    fmt::print("moon  azimuth {:9.4f}  elevation {:8.4f} degrees, {:.1f} % lit\n", e.moon.azimuthDeg,
+    fmt::print("sun     azimuth {:9.4f}  elevation {:8.4f} degrees\n", e.sun.azimuthDeg, e.sun.elevationDeg);
+    fmt::print("moon    azimuth {:9.4f}  elevation {:8.4f} degrees, {:.1f} % lit\n", e.moon.azimuthDeg,
                e.moon.elevationDeg, 100.0 * e.moonIlluminatedFraction);
+    for (const sky::Planet& p : e.planets)
+      if (p.body.elevationDeg > 0.0)
+        fmt::print("{:7} azimuth {:9.4f}  elevation {:8.4f} degrees, magnitude {:.1f}\n", p.name,
+                   p.body.azimuthDeg, p.body.elevationDeg, p.magnitude);
   }
   return 0;
 }

@@ -19,6 +19,13 @@ uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
 uniform float uStarlight;         // share of the stars' light that is drawn; 0: none, by day
 uniform mat3 uCelestialFromEnu;
+// Those planets that are drawn.
+struct PlanetSpot {
+  vec4 place;  // direction; w: least radius, rad
+  vec4 light;  // illuminance above the atmosphere, lux; w: magnitudes brighter than V = 4.5
+};
+uniform PlanetSpot uPlanets[6];
+uniform int uPlanetCount;
 uniform sampler2D uStars;         // lib/stars.glsl
 uniform int uStarCells;
 #ifdef WELKIN_SKY_BOX
@@ -75,14 +82,20 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
 }
 
-// Above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the processor runs both sides of a branch.
+// Stars and planets above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the processor runs both sides of a branch.
 vec3 starsBeyond(vec3 dir, float pixelRad) {
   vec3 stars = vec3(0.0);
   int drawn = uStarlight > 0.0 ? 1 : 0;
   for (int i = 0; i < drawn; ++i) {
     stars = uStarlight * starLuminance(uStars, uStarCells, uCelestialFromEnu * dir, pixelRad);
-    stars *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
   }
+  for (int i = 0; i < uPlanetCount; ++i) {
+    PlanetSpot planet = uPlanets[i];
+    stars += vec3(planet.light) * planetShare(dir - vec3(planet.place), planet.light.w, planet.place.w, pixelRad);
+  }
+  drawn += uPlanetCount;
+  for (int i = 0; i < min(drawn, 1); ++i)
+    stars *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
   return stars;
 }
 

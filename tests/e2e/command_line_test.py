@@ -49,6 +49,15 @@ class Sun(ProgramTest):
         self.assertEqual(set(j["moon"]) >= {"azimuth_deg", "elevation_deg", "illuminated_fraction"}, True)
         self.assertTrue(0 <= j["moon"]["illuminated_fraction"] <= 1)
 
+    def test_planets_above_the_horizon(self):
+        # Jupiter two days before its opposition of 2026-01-10, at midnight near the meridian.
+        where = ("sun", "--place", "47,8", "--time", "2026-01-08T23:30:00Z")
+        planets = {p["name"]: p for p in json.loads(self.succeed(*where, "--json"))["planets"]}
+        self.assertEqual(list(planets), ["jupiter", "uranus"])
+        self.assertAlmostEqual(planets["jupiter"]["elevation_deg"], 90 - 47 + 22, delta=1)
+        self.assertAlmostEqual(planets["jupiter"]["magnitude"], -2.7, delta=0.1)
+        self.assertIn("jupiter azimuth", self.succeed(*where))
+
     def test_negative_places_and_offsets(self):
         here = self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T12:00:00+10:00", "--json")
         self.assertEqual(here, self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T02:00:00Z", "--json"))

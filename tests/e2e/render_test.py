@@ -57,7 +57,7 @@ class Stills(ProgramTest):
         self.assertGreater(r["peak_rss_mib"], 10)
         self.assertLess(r["peak_rss_mib"], 1536)
         self.assertEqual(r["scene"]["at_s"], 600)
-        for key in ("moon", "notes", "device", "metar", "heading_deg", "exposure_ev", "place"):
+        for key in ("moon", "planets", "notes", "device", "metar", "heading_deg", "exposure_ev", "place"):
             self.assertIn(key, r)
         self.assertNotIn("frames", r)
         info = json.loads(self.succeed("info", "a.exr", "--json"))

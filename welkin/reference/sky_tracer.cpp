@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/exponential.hpp>
 #include <glm/matrix.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -104,7 +105,9 @@ struct SkyTracer::Impl {
         airglow(s.atmosphere->uniforms().airglow),
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM),
         starlight(s.scene.output.stars ? sky::starlightShare(s.ephemeris.sun.elevationDeg) : 0.0f),
-        celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)) {
+        celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)),
+        planets(s.scene.output.stars ? sky::planetSpots(s.ephemeris, s.scene.camera.eyeM)
+                                     : sky::PlanetSpots{}) {
     if (starlight > 0.0f)
       stars = sky::starCells(sky::starLights(s.scene.time), sky::starLevel(scene::middlePixelRad(projector)));
   }
@@ -125,15 +128,22 @@ struct SkyTracer::Impl {
   float starlight;  // share that is drawn
   glm::dmat3 celestialFromEnu;
   sky::StarCells stars;
+  sky::PlanetSpots planets;
 
-  // Above the air, behind the moon.
+  // Stars and planets above the air, behind the moon.
   glm::dvec3 starsBeyond(const glm::dvec3& way, bool discs, float pixelRad) const {
     const sky::Body& moon = state.ephemeris.moon;
     if (discs && glm::length(way - moon.direction) < moon.angularRadiusRad) return glm::dvec3(0.0);
-    const shared::sampler2D texels{&stars.texels, shared::Wrap::kClamp, shared::Wrap::kClamp};
-    return static_cast<double>(starlight) *
-           glm::dvec3(
-               shared::starLuminance(texels, stars.cells, glm::vec3(celestialFromEnu * way), pixelRad));
+    glm::vec3 luminance(0.0f);
+    if (starlight > 0.0f) {
+      const shared::sampler2D texels{&stars.texels, shared::Wrap::kClamp, shared::Wrap::kClamp};
+      luminance =
+          starlight * shared::starLuminance(texels, stars.cells, glm::vec3(celestialFromEnu * way), pixelRad);
+    }
+    for (const sky::PlanetSpot& p : std::span(planets.spots).first(static_cast<std::size_t>(planets.count)))
+      luminance +=
+          p.illuminance * shared::planetShare(glm::vec3(way) - p.direction, p.brighter, p.leastRad, pixelRad);
+    return glm::dvec3(luminance);
   }
 
   // A path on its way to its next event.
@@ -380,7 +390,8 @@ SkySample SkyTracer::Impl::traceFrom(const glm::dvec3& way, std::uint64_t seedOf
   double near = 0.0, far = 0.0;
   glm::dvec3 onDisc(0.0);
   if (discs && !meetsGround(ray)) onDisc = lights.discs(way);
-  if (starlight > 0.0f && pixelRad > 0.0f && !meetsGround(ray)) onDisc += starsBeyond(way, discs, pixelRad);
+  if ((starlight > 0.0f || planets.count > 0) && pixelRad > 0.0f && !meetsGround(ray))
+    onDisc += starsBeyond(way, discs, pixelRad);
   if (!earth.crossings(ray, air.topM(), near, far) || far <= 0.0) {
     work.sample.luminance = onDisc;
     return work.sample;

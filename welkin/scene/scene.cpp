@@ -52,7 +52,9 @@ void describe(Output& o, ParamVisitor& v) {
   v.value(
       {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
       o.sunDisc);
-  v.value({"stars", "", "draw the stars when the sun is down, whatever sun_disc says; none over a sky box"},
+  v.value({"stars", "",
+           "draw stars and planets when the sun is down, Venus by day too, whatever sun_disc says; none over "
+           "a sky box"},
           o.stars);
   v.value(
       {"flare", "",

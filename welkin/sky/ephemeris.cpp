@@ -111,20 +111,24 @@ double moonPhaseMagnitudes(double phaseAngleRad) {
 Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
   const auto [tt, ut1] = clocksAt(time);  // TDB differs from TT by 2 ms at most
 
-  // Sun: astrometric direction of date, then annual aberration (20 arc seconds) from the earth's barycentric
-  // velocity.
+  // Sun and planets: astrometric direction of date, then annual aberration (20 arc seconds) from the earth's
+  // barycentric velocity.
   double pvHeliocentric[2][3], pvBarycentric[2][3];
   eraEpv00(tt.day, tt.fraction, pvHeliocentric, pvBarycentric);
   const glm::dvec3 earthAu = toVec(pvHeliocentric[0]);
   const double sunDistanceAu = glm::length(earthAu);
-  double natural[3], velocity[3], proper[3];
-  for (int i = 0; i < 3; ++i) {
-    natural[i] = -earthAu[i] / sunDistanceAu;
+  double velocity[3];
+  for (int i = 0; i < 3; ++i)
     velocity[i] = pvBarycentric[1][i] * kLightSecondsPerAu / ERFA_DAYSEC;  // in units of c
-  }
   const double lorentz = std::sqrt(1.0 - glm::dot(toVec(velocity), toVec(velocity)));
-  eraAb(natural, velocity, sunDistanceAu, lorentz, proper);
-  const glm::dvec3 sunGcrsM = toVec(proper) * (sunDistanceAu * ERFA_DAU);
+  const auto apparentM = [&](const glm::dvec3& fromEarthAu) {
+    const double distanceAu = glm::length(fromEarthAu);
+    double natural[3], proper[3];
+    for (int i = 0; i < 3; ++i) natural[i] = fromEarthAu[i] / distanceAu;
+    eraAb(natural, velocity, sunDistanceAu, lorentz, proper);
+    return toVec(proper) * (distanceAu * ERFA_DAU);
+  };
+  const glm::dvec3 sunGcrsM = apparentM(-earthAu);
 
   // Moon: it shares the earth's motion, so light time and aberration together are its own motion during 1.3
   // s.
@@ -160,6 +164,11 @@ Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
   e.enuFromCelestial = enuFromTerrestrial * rotation;
   e.sun = bodyAt(sunM, kSunRadiusM);
   e.moon = bodyAt(moonM, kMoonRadiusM);
+  const auto places = planetPlaces(tt.day, tt.fraction, earthAu);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const PlanetPlace& p = places[i];
+    e.planets[i] = {p.name, bodyAt(topocentric(apparentM(p.fromEarthAu)), p.radiusM), p.magnitude, p.colour};
+  }
   const double cosPhase = glm::dot(glm::normalize(-moonM), glm::normalize(sunM - moonM));
   e.moonPhaseAngleRad = std::acos(std::clamp(cosPhase, -1.0, 1.0));
   e.moonIlluminatedFraction = 0.5 * (1.0 + cosPhase);

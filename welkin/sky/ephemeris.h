@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where sun and moon stand. Geometric directions without refraction, topocentric (the moon's parallax
-// matters: up to 1 degree).
+// Where sun, moon and planets stand. Geometric directions without refraction, topocentric (the moon's
+// parallax matters: up to 1 degree).
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <string_view>
 
 #include "welkin/core/utc_time.h"
+#include "welkin/sky/planets.h"
 
 namespace welkin::sky {
 
@@ -24,14 +27,22 @@ struct Body {
   glm::dvec3 direction{0, 0, 1};  // unit, east-north-up
 };
 
+struct Planet {
+  std::string_view name;  // in lower case
+  Body body;
+  double magnitude = 0.0;  // V
+  double colour = 0.0;     // B-V
+};
+
 struct Ephemeris {
   Body sun;
   Body moon;
-  double moonIlluminatedFraction = 0.0;  // 0 new, 1 full
-  double moonPhaseAngleRad = 0.0;        // sun-moon-observer; 0 full, pi new
-  double moonIlluminanceLux = 0.0;       // above the atmosphere, facing the moon
-  double sunIlluminanceLux = 0.0;        // above the atmosphere, facing the sun
-  glm::dmat3 enuFromCelestial{1.0};      // directions from the celestial system (GCRS) to east-north-up
+  std::array<Planet, kPlanetCount> planets;  // from the sun outwards: Mercury, Venus, Mars to Uranus
+  double moonIlluminatedFraction = 0.0;      // 0 new, 1 full
+  double moonPhaseAngleRad = 0.0;            // sun-moon-observer; 0 full, pi new
+  double moonIlluminanceLux = 0.0;           // above the atmosphere, facing the moon
+  double sunIlluminanceLux = 0.0;            // above the atmosphere, facing the sun
+  glm::dmat3 enuFromCelestial{1.0};          // directions from the celestial system (GCRS) to east-north-up
 };
 
 Ephemeris ephemeris(const UtcTime& time, const Observer& observer);

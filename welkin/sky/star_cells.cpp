@@ -20,9 +20,8 @@ using namespace welkin::glsl;
 }  // namespace shared
 
 constexpr double kFinestPixelRad = shared::kWidestPixelRad / (1 << (kStarLevels - 1));
-constexpr float kSpotPx = 1.75f;  // radius; its sum over pixels is within 2 % wherever their centres lie
 constexpr double kHaloBelow = 4.5;
-constexpr float kHaloShare = 0.1f, kHaloGrowth = 0.33f;  // of the radius a magnitude; chosen by eye
+using shared::kHaloGrowth, shared::kHaloShare, shared::kSpotPx;
 
 struct Spot {
   glm::dvec3 direction;
@@ -82,6 +81,24 @@ int starLevel(float pixelRad) {
 float starlightShare(double sunElevationDeg) {
   const double x = std::clamp(1.0 - sunElevationDeg / 3.0, 0.0, 1.0);
   return static_cast<float>(x * x * (3.0 - 2.0 * x));
+}
+
+PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM) {
+  constexpr double kEarthRadiusM = 6.371e6, kMarginRad = 0.1;
+  constexpr double kByDay = -1.5;  // V
+  const double lowest = -std::sqrt(2.0 * std::max(eyeM, 0.0) / kEarthRadiusM) - kMarginRad;
+  const float others = starlightShare(ephemeris.sun.elevationDeg);
+  PlanetSpots out;
+  for (const Planet& planet : ephemeris.planets) {
+    const float share = planet.magnitude < kByDay ? 1.0f : others;
+    if (share <= 0.0f || planet.body.direction.z < lowest) continue;
+    const auto lux = static_cast<float>(starIlluminanceLux(planet.magnitude));
+    out.spots[static_cast<std::size_t>(out.count++)] = {
+        glm::vec3(planet.body.direction), static_cast<float>(2.0 * planet.body.angularRadiusRad),
+        share * lux * blackBodyColour(starTemperatureK(planet.colour)),
+        static_cast<float>(kHaloBelow - planet.magnitude)};
+  }
+  return out;
 }
 
 StarCells starCells(std::span<const StarLight> stars, int level) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stars sorted for pictures that look them up by direction: the texture of shaders/lib/stars.glsl.
-//
-// Every star is a round spot 3.5 pixels wide, of which half stands out. Those brighter than V = 4.5 send a
-// share of their light into a wider one, as lenses and eyes do: where a pixel cannot become whiter, bright
-// stars are larger.
+// Stars and planets as pictures draw them: spots of shaders/lib/stars.glsl. Stars are sorted into its
+// texture, to be looked up by direction; planets are few, move among the stars, and are a list.
 #pragma once
 
+#include <array>
+#include <glm/vec3.hpp>
 #include <span>
 
 #include "welkin/core/image.h"
+#include "welkin/sky/ephemeris.h"
 #include "welkin/sky/stars.h"
 
 namespace welkin::sky {
@@ -27,5 +27,20 @@ StarCells starCells(std::span<const StarLight> stars, int level);
 // Share of the stars' light that is drawn: all of it when the sun is down, none from 3 degrees up, where the
 // sky outshines them a hundred times in all but a telescope's picture.
 float starlightShare(double sunElevationDeg);
+
+// As planetShare() of the shaders takes it.
+struct PlanetSpot {
+  glm::vec3 direction{0, 0, 1};  // unit, east-north-up
+  float leastRad = 0.0f;
+  glm::vec3 illuminance{0};  // above the atmosphere, facing it, lux, linear Rec. 709
+  float brighter = 0.0f;     // magnitudes brighter than V = 4.5
+};
+struct PlanetSpots {
+  std::array<PlanetSpot, kPlanetCount> spots;
+  int count = 0;  // that are drawn
+};
+// Those above the horizon of an eye, or not far below it. They go with the stars by day, but for those
+// brighter than any star: Venus shows at noon where pixels are small enough.
+PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM);
 
 }  // namespace welkin::sky

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stars in pictures: their light whatever the projection and the pixels, and what hides them.
+// Stars and planets in pictures: their light whatever the projection and the pixels, and what hides them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -55,7 +56,7 @@ double lightIn(const scene::SkyState& state) {
   return lightIn(state, [&](int x, int y) { return luminanceOf(&picture.data[picture.index(x, y)]); });
 }
 
-// Illuminance of the stars whose directions pass.
+// Illuminance of the stars and planets whose directions pass.
 template <class Passes>
 double starlight(const scene::SkyState& state, const Passes& passes) {
   double sum = 0.0;
@@ -63,6 +64,9 @@ double starlight(const scene::SkyState& state, const Passes& passes) {
     const glm::dvec3 enu = state.ephemeris.enuFromCelestial * star.direction;
     if (enu.z > 0.0 && passes(enu)) sum += luminanceOf(&star.illuminance.x);
   }
+  for (const sky::Planet& planet : state.ephemeris.planets)
+    if (const glm::dvec3& enu = planet.body.direction; enu.z > 0.0 && passes(enu))
+      sum += sky::starIlluminanceLux(planet.magnitude);
   return sum;
 }
 
@@ -191,6 +195,46 @@ TEST(StarPictures, DoNotShowAtSunset) {
   const Image<float> without = drawn(state);
   for (std::size_t i = 0; i < with.data.size(); ++i)
     ASSERT_NEAR(with.data[i] / without.data[i], 1.0f, 0.003f) << i;
+}
+
+// Half an hour before sunset: its light is that which the air lets through, and in small pixels it shows.
+TEST(StarPictures, ShowVenusBeforeSunset) {
+  const scene::Scene s = clearScene(3.5);
+  const sky::Planet venus = scene::lightsAt(s, 0.0).ephemeris.planets[1];
+  ASSERT_GT(venus.body.elevationDeg, 10.0);
+  const auto seen = [&](double fovDeg) {
+    return scene::buildSky(looking(sized(s, 64, 64), venus.body.azimuthDeg, venus.body.elevationDeg, fovDeg),
+                           0.0);
+  };
+  const auto without = [](scene::SkyState state) {
+    state.scene.output.stars = false;
+    return state;
+  };
+  const scene::SkyState wide = seen(2.0), near = seen(0.5);
+  const glm::vec3 arriving =
+      wide.atmosphere->transmittanceToSpace(wide.scene.camera.eyeM, venus.body.direction.z) *
+      static_cast<float>(sky::starIlluminanceLux(venus.magnitude)) *
+      sky::blackBodyColour(sky::starTemperatureK(venus.colour));
+  const double expected = luminanceOf(&arriving.x);
+  EXPECT_NEAR((lightIn(wide) - lightIn(without(wide))) / expected, 1.0, 0.05);
+  // The same paths with and without it.
+  const auto traced = [&](const scene::SkyState& state) {
+    const reference::SkyTracer tracer(state, {});
+    const scene::Projector p = scene::projectorOf(state);
+    double sum = 0.0;
+    for (int y = 24; y < 40; ++y)
+      for (int x = 24; x < 40; ++x)
+        for (std::uint64_t i = 0; i < 16; ++i) {
+          const glm::vec3 l(tracer.trace(x, y, i).luminance);
+          sum += luminanceOf(&l.x) / 16.0 * solidAngle(p, x, y);
+        }
+    return sum;
+  };
+  EXPECT_NEAR((traced(wide) - traced(without(wide))) / expected, 1.0, 0.1);
+  const Image<float> with = drawn(near), plain = drawn(without(near));
+  float most = 0.0f;
+  for (std::size_t i = 1; i < with.data.size(); i += 3) most = std::max(most, with.data[i] / plain.data[i]);
+  EXPECT_GT(most, 1.05f);
 }
 
 TEST(StarPictures, AreExposedAsWithoutStars) {
