@@ -6,6 +6,7 @@
 // the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
 #include "lib/ground.glsl"
+#include "lib/milky_way.glsl"
 #include "lib/stars.glsl"
 
 uniform vec3 uGroundAlbedo;
@@ -17,15 +18,13 @@ uniform float uSunRadius;         // rad
 uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
-uniform float uStarlight;         // share of the stars' light that is drawn; 0: none, by day
+uniform int uBeyond;              // 1: stars, planets or Milky Way are drawn
 uniform mat3 uCelestialFromEnu;
-// Those planets that are drawn.
-struct PlanetSpot {
-  vec4 place;  // direction; w: least radius, rad
-  vec4 light;  // illuminance above the atmosphere, lux; w: magnitudes brighter than V = 4.5
-};
-uniform PlanetSpot uPlanets[6];
-uniform int uPlanetCount;
+uniform sampler2D uMilkyWay;      // lib/milky_way.glsl
+// Shares of the stars' and of the Milky Way's light that are drawn, number of planets; of each planet its direction and least radius,
+// rad, then its illuminance above the atmosphere, lux, and how many magnitudes it is brighter than V = 4.5. A texture, as uniforms cost a
+// rasteriser on the processor by day too.
+uniform sampler2D uPlanets;
 uniform sampler2D uStars;         // lib/stars.glsl
 uniform int uStarCells;
 #ifdef WELKIN_SKY_BOX
@@ -82,21 +81,23 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
 }
 
-// Stars and planets above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the processor runs both sides of a branch.
+// Stars, planets and the Milky Way above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the
+// processor runs both sides of a branch.
 vec3 starsBeyond(vec3 dir, float pixelRad) {
-  vec3 stars = vec3(0.0);
-  int drawn = uStarlight > 0.0 ? 1 : 0;
-  for (int i = 0; i < drawn; ++i) {
-    stars = uStarlight * starLuminance(uStars, uStarCells, uCelestialFromEnu * dir, pixelRad);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < uBeyond; ++i) {
+    vec4 shares = texelFetch(uPlanets, ivec2(0, 0), 0);
+    vec3 celestial = uCelestialFromEnu * dir;
+    sum = shares.x * starLuminance(uStars, uStarCells, celestial, pixelRad);
+    sum += shares.y * vec3(textureLod(uMilkyWay, milkyWayAt(celestial), 0.0));
+    int planets = int(shares.z);
+    for (int p = 0; p < planets; ++p) {
+      vec4 place = texelFetch(uPlanets, ivec2(2 * p + 1, 0), 0), light = texelFetch(uPlanets, ivec2(2 * p + 2, 0), 0);
+      sum += vec3(light) * planetShare(dir - vec3(place), light.w, place.w, pixelRad);
+    }
+    sum *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
   }
-  for (int i = 0; i < uPlanetCount; ++i) {
-    PlanetSpot planet = uPlanets[i];
-    stars += vec3(planet.light) * planetShare(dir - vec3(planet.place), planet.light.w, planet.place.w, pixelRad);
-  }
-  drawn += uPlanetCount;
-  for (int i = 0; i < min(drawn, 1); ++i)
-    stars *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
-  return stars;
+  return sum;
 }
 
 vec3 groundLuminance(vec3 dir, float distanceM) {

@@ -22,6 +22,7 @@
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
 #include "welkin/scene/rain_shafts.h"
+#include "welkin/sky/milky_way.h"
 #include "welkin/sky/star_cells.h"
 
 namespace welkin::reference {
@@ -32,6 +33,7 @@ using namespace welkin::glsl;
 using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 #include "shaders/lib/ground.glsl"
+#include "shaders/lib/milky_way.glsl"
 #include "shaders/lib/stars.glsl"
 }  // namespace shared
 
@@ -105,9 +107,11 @@ struct SkyTracer::Impl {
         airglow(s.atmosphere->uniforms().airglow),
         airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM),
         starlight(s.scene.output.stars ? sky::starlightShare(s.ephemeris.sun.elevationDeg) : 0.0f),
+        galaxyShare(s.scene.output.stars ? sky::milkyWayShare(s.ephemeris.sun.elevationDeg) : 0.0f),
         celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)),
-        planets(s.scene.output.stars ? sky::planetSpots(s.ephemeris, s.scene.camera.eyeM)
-                                     : sky::PlanetSpots{}) {
+        planets(s.scene.output.stars
+                    ? sky::planetSpots(s.ephemeris, s.scene.camera.eyeM, scene::middlePixelRad(projector))
+                    : sky::PlanetSpots{}) {
     if (starlight > 0.0f)
       stars = sky::starCells(sky::starLights(s.scene.time), sky::starLevel(scene::middlePixelRad(projector)));
   }
@@ -125,12 +129,12 @@ struct SkyTracer::Impl {
   PhaseSampler peak;  // of the droplets: see gather()
   glm::dvec3 airglow;
   double airglowHeight;
-  float starlight;  // share that is drawn
+  float starlight, galaxyShare;  // shares that are drawn
   glm::dmat3 celestialFromEnu;
   sky::StarCells stars;
   sky::PlanetSpots planets;
 
-  // Stars and planets above the air, behind the moon.
+  // Stars, planets and the Milky Way above the air, behind the moon.
   glm::dvec3 starsBeyond(const glm::dvec3& way, bool discs, float pixelRad) const {
     const sky::Body& moon = state.ephemeris.moon;
     if (discs && glm::length(way - moon.direction) < moon.angularRadiusRad) return glm::dvec3(0.0);
@@ -139,6 +143,11 @@ struct SkyTracer::Impl {
       const shared::sampler2D texels{&stars.texels, shared::Wrap::kClamp, shared::Wrap::kClamp};
       luminance =
           starlight * shared::starLuminance(texels, stars.cells, glm::vec3(celestialFromEnu * way), pixelRad);
+    }
+    if (galaxyShare > 0.0f) {
+      const shared::sampler2D map{&sky::milkyWay(), shared::Wrap::kRepeat, shared::Wrap::kClamp};
+      luminance += galaxyShare * glm::vec3(shared::textureLod(
+                                     map, shared::milkyWayAt(glm::vec3(celestialFromEnu * way)), 0.0f));
     }
     for (const sky::PlanetSpot& p : std::span(planets.spots).first(static_cast<std::size_t>(planets.count)))
       luminance +=

@@ -11,6 +11,7 @@
 #include "welkin/shading/splat_lights.h"
 #include "welkin/shading/uniforms.h"
 #include "welkin/sky/atmosphere.h"
+#include "welkin/sky/milky_way.h"
 
 namespace welkin::render {
 namespace {
@@ -155,14 +156,46 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uAerialTransmittance", through_);
 }
 
+// What lib/background.glsl finds in uPlanets.
+void SkyTextures::bindPlanets(gpu::Program& program, const scene::SkyState& state, float pixelRad) {
+  Image<float>& texels = planetTexels_;
+  if (texels.data.empty()) texels = Image<float>(2 * sky::kPlanetCount + 1, 1, 4);
+  const auto texel = [&](int i, const glm::vec3& v, float w) {
+    for (int c = 0; c < 3; ++c) texels.at(i, 0, c) = v[c];
+    texels.at(i, 0, 3) = w;
+  };
+  sky::PlanetSpots planets;
+  glm::vec3 shares(0.0f);
+  if (state.scene.output.stars) {
+    planets = sky::planetSpots(state.ephemeris, state.scene.camera.eyeM, pixelRad);
+    const double sunDeg = state.ephemeris.sun.elevationDeg;
+    shares = {sky::starlightShare(sunDeg), sky::milkyWayShare(sunDeg), static_cast<float>(planets.count)};
+  }
+  texel(0, shares, 0.0f);
+  for (int i = 0; i < planets.count; ++i) {
+    const sky::PlanetSpot& spot = planets.spots[static_cast<std::size_t>(i)];
+    texel(2 * i + 1, spot.direction, spot.leastRad);
+    texel(2 * i + 2, spot.illuminance, spot.brighter);
+  }
+  put(planets_, texels, {.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest});
+  program.bind("uPlanets", planets_);
+  program.set("uBeyond", shares != glm::vec3(0.0f) ? 1 : 0);
+}
+
 void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
                             StarsMade made) {
   if (!program.has("uStars")) return;
+  if (milkyWay_.id() == 0)
+    milkyWay_ =
+        gpu::Texture2D(sky::milkyWay(), {.format = gpu::Format::kRgba32F, .wrapX = gpu::Wrap::kRepeat});
+  program.bind("uMilkyWay", milkyWay_);
+  bindPlanets(program, state, pixelRad);
   constexpr gpu::TextureOptions kTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
   const bool out = sky::starlightShare(state.ephemeris.sun.elevationDeg) > 0.0f;
   if (!state.scene.output.stars || (!out && made == StarsMade::kWhenOut)) {
     if (noStars_.id() == 0) noStars_ = gpu::Texture2D(Image<float>(1, 1, 4), kTexels);
-    program.bind("uStars", noStars_);  // which nobody reads
+    program.bind("uStars", noStars_);  // which holds none
+    program.set("uStarCells", 1);
     return;
   }
   if (starsTime_ != state.scene.time) {

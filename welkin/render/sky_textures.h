@@ -29,9 +29,9 @@ class SkyTextures {
   void updateLive(scene::SkyState& state);
   // Binds those that the program asks for.
   void bind(const gpu::Program& program) const;
-  // And the stars, for pictures with pixels of the given size. Their texture is made when stars are out, or
-  // early, so that no frame at dusk has to wait for it; again for pixels of another level (sky/star_cells.h),
-  // and for another scene time.
+  // And stars, planets and Milky Way, for pictures with pixels of the given size. Their texture is made when
+  // stars are out, or early, so that no frame at dusk has to wait for it; again for pixels of another level
+  // (sky/star_cells.h), and for another scene time.
   enum class StarsMade { kWhenOut, kEarly };
   void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
                  StarsMade made = StarsMade::kWhenOut);
@@ -53,6 +53,7 @@ class SkyTextures {
     sky::SkyTablesInProgress tables;
     scene::ClearSkyKeyInProgress light;
   };
+  void bindPlanets(gpu::Program& program, const scene::SkyState& state, float pixelRad);
   void keep(const scene::SkyState& state, KeyName first, KeyName second);
   void make(const scene::SkyState& state, KeyName name, Key& key);
   void start(const scene::SkyState& state, KeyName name, double startedAt);
@@ -79,7 +80,8 @@ class SkyTextures {
   };
   std::array<Stars, sky::kStarLevels> stars_;  // by level; of the time
   std::optional<UtcTime> starsTime_;
-  gpu::Texture2D noStars_;
+  gpu::Texture2D noStars_, milkyWay_, planets_;
+  Image<float> planetTexels_;
 };
 
 }  // namespace welkin::render

@@ -12,7 +12,6 @@
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
 #include "welkin/scene/rain_shafts.h"
-#include "welkin/sky/star_cells.h"
 
 namespace welkin::shading {
 namespace {
@@ -58,18 +57,6 @@ void putAirLight(Refill& u, std::string_view owner, const scene::AirLight& light
   for (int c = 0; c < 3; ++c)
     u.put(owner, kColours[c],
           glm::vec4(light.mean[c], light.along[0][c], light.along[1][c], light.along[2][c]));
-}
-
-void putPlanets(Refill& u, const sky::PlanetSpots& planets) {
-  static constexpr const char* kOwners[] = {"uPlanets[0]", "uPlanets[1]", "uPlanets[2]",
-                                            "uPlanets[3]", "uPlanets[4]", "uPlanets[5]"};
-  static_assert(std::size(kOwners) == sky::kPlanetCount);
-  u.put("", "uPlanetCount", planets.count);
-  for (std::size_t i = 0; i < planets.spots.size(); ++i) {
-    const sky::PlanetSpot& spot = planets.spots[i];
-    u.put(kOwners[i], ".place", glm::vec4(spot.direction, spot.leastRad));
-    u.put(kOwners[i], ".light", glm::vec4(spot.illuminance, spot.brighter));
-  }
 }
 
 }  // namespace
@@ -152,9 +139,7 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
     return light.illuminance / static_cast<float>(kPi * radius * radius * std::max(share, 0.005));
   };
   u.put("", "uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
-  u.put("", "uStarlight", s.output.stars ? sky::starlightShare(e.sun.elevationDeg) : 0.0f);
   u.put("", "uCelestialFromEnu", glm::mat3(glm::transpose(e.enuFromCelestial)));
-  putPlanets(u, s.output.stars ? sky::planetSpots(e, s.camera.eyeM) : sky::PlanetSpots{});
   u.put("", "uSunDirection", sun.direction);
   u.put("", "uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
   u.put("", "uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));

@@ -83,18 +83,20 @@ float starlightShare(double sunElevationDeg) {
   return static_cast<float>(x * x * (3.0 - 2.0 * x));
 }
 
-PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM) {
+PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM, float pixelRad) {
   constexpr double kEarthRadiusM = 6.371e6, kMarginRad = 0.1;
-  constexpr double kByDay = -1.5;  // V
+  constexpr double kByDay = 150.0;  // cd/m2
   const double lowest = -std::sqrt(2.0 * std::max(eyeM, 0.0) / kEarthRadiusM) - kMarginRad;
   const float others = starlightShare(ephemeris.sun.elevationDeg);
   PlanetSpots out;
   for (const Planet& planet : ephemeris.planets) {
-    const float share = planet.magnitude < kByDay ? 1.0f : others;
-    if (share <= 0.0f || planet.body.direction.z < lowest) continue;
     const auto lux = static_cast<float>(starIlluminanceLux(planet.magnitude));
+    const auto leastRad = static_cast<float>(2.0 * planet.body.angularRadiusRad);
+    const bool byDay = lux * shared::planetShare(glm::vec3(0.0f), 0.0f, leastRad, pixelRad) > kByDay;
+    const float share = byDay ? 1.0f : others;
+    if (share <= 0.0f || planet.body.direction.z < lowest) continue;
     out.spots[static_cast<std::size_t>(out.count++)] = {
-        glm::vec3(planet.body.direction), static_cast<float>(2.0 * planet.body.angularRadiusRad),
+        glm::vec3(planet.body.direction), leastRad,
         share * lux * blackBodyColour(starTemperatureK(planet.colour)),
         static_cast<float>(kHaloBelow - planet.magnitude)};
   }

@@ -39,8 +39,9 @@ struct PlanetSpots {
   std::array<PlanetSpot, kPlanetCount> spots;
   int count = 0;  // that are drawn
 };
-// Those above the horizon of an eye, or not far below it. They go with the stars by day, but for those
-// brighter than any star: Venus shows at noon where pixels are small enough.
-PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM);
+// Those above the horizon of an eye, or not far below it, for pictures with pixels of the given size. They go
+// with the stars by day, but for those whose spot is brighter than 150 cd/m2, a thirtieth of a bright sky:
+// Venus at noon, where pixels are smaller than 0.03 degrees.
+PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM, float pixelRad);
 
 }  // namespace welkin::sky

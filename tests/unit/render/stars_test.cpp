@@ -9,6 +9,7 @@
 
 #include "tests/testing/skies.h"
 #include "welkin/core/colour.h"
+#include "welkin/core/glsl.h"
 #include "welkin/core/units.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/framebuffer.h"
@@ -16,10 +17,16 @@
 #include "welkin/render/live_sky.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/projector.h"
+#include "welkin/sky/milky_way.h"
 #include "welkin/sky/stars.h"
 
 namespace welkin::render {
 namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+#include "shaders/lib/milky_way.glsl"
+}  // namespace shared
 
 using namespace welkin::testing;
 using scene::Projection;
@@ -56,7 +63,27 @@ double lightIn(const scene::SkyState& state) {
   return lightIn(state, [&](int x, int y) { return luminanceOf(&picture.data[picture.index(x, y)]); });
 }
 
-// Illuminance of the stars and planets whose directions pass.
+// Illuminance of the Milky Way from directions that pass: the sum over its map's texels.
+template <class Passes>
+double galaxyLight(const scene::SkyState& state, const Passes& passes) {
+  const Image<float>& map = sky::milkyWay();
+  const glm::dmat3 enuFromGalactic =
+      state.ephemeris.enuFromCelestial *
+      glm::dmat3(shared::kGalaxyCentre, shared::kGalaxyAhead, shared::kGalaxyPole);
+  double sum = 0.0;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const double l = 2.0 * kPi * (x + 0.5) / map.width, b = radians(96.0 * ((y + 0.5) / map.height - 0.5));
+      const glm::dvec3 enu =
+          enuFromGalactic * glm::dvec3(std::cos(b) * std::cos(l), std::cos(b) * std::sin(l), std::sin(b));
+      if (enu.z > 0.0 && passes(enu))
+        sum += luminanceOf(&map.data[map.index(x, y)]) * std::cos(b) * 2.0 * kPi / map.width * radians(96.0) /
+               map.height;
+    }
+  return sum;
+}
+
+// Illuminance of the stars, planets and the Milky Way whose directions pass.
 template <class Passes>
 double starlight(const scene::SkyState& state, const Passes& passes) {
   double sum = 0.0;
@@ -67,10 +94,10 @@ double starlight(const scene::SkyState& state, const Passes& passes) {
   for (const sky::Planet& planet : state.ephemeris.planets)
     if (const glm::dvec3& enu = planet.body.direction; enu.z > 0.0 && passes(enu))
       sum += sky::starIlluminanceLux(planet.magnitude);
-  return sum;
+  return sum + galaxyLight(state, passes);
 }
 
-// Nothing but stars.
+// Nothing but stars, planets and the Milky Way.
 scene::SkyState starsAlone(const scene::Scene& s) {
   return airlessSky(s, 0.0);
 }
@@ -210,7 +237,7 @@ TEST(StarPictures, ShowVenusBeforeSunset) {
     state.scene.output.stars = false;
     return state;
   };
-  const scene::SkyState wide = seen(2.0), near = seen(0.5);
+  const scene::SkyState wide = seen(1.5), near = seen(0.5);
   const glm::vec3 arriving =
       wide.atmosphere->transmittanceToSpace(wide.scene.camera.eyeM, venus.body.direction.z) *
       static_cast<float>(sky::starIlluminanceLux(venus.magnitude)) *
@@ -237,9 +264,10 @@ TEST(StarPictures, ShowVenusBeforeSunset) {
   EXPECT_GT(most, 1.05f);
 }
 
+// Away from the Milky Way, which is an area of the picture and counts.
 TEST(StarPictures, AreExposedAsWithoutStars) {
   SkyRenderer renderer;
-  scene::SkyState state = scene::buildSky(looking(sized(moonlessScene(), 640, 360), 180.0, 40.0), 0.0);
+  scene::SkyState state = scene::buildSky(looking(sized(moonlessScene(), 640, 360), 75.0, 40.0), 0.0);
   const double with = renderer.draw(state).autoExposureEv;
   state.scene.output.stars = false;
   EXPECT_NEAR(with, renderer.draw(state).autoExposureEv, 0.1);

@@ -118,13 +118,17 @@ TEST(PlanetSpots, HoldTheirLight) {
 
 TEST(PlanetSpots, AreThoseThatMayBeSeen) {
   Ephemeris e = ephemeris(parseUtcTime("2026-06-21T20:00:00Z"), {47.0, 8.0, 0.0});
-  const auto count = [&](double eyeM) { return planetSpots(e, eyeM).count; };
+  const auto count = [&](double eyeM, float pixelRad = 1.5e-4f) {
+    return planetSpots(e, eyeM, pixelRad).count;
+  };
   for (Planet& planet : e.planets) planet.body.direction = glm::dvec3(0, 0, 1);
   e.sun.elevationDeg = -5.0;
   EXPECT_EQ(count(0.0), kPlanetCount);
   e.sun.elevationDeg = 40.0;
+  EXPECT_EQ(count(0.0, 3e-3f), 0);
+  EXPECT_EQ(count(0.0, 5e-4f), 1);
   EXPECT_EQ(count(0.0), 2);  // Venus and Jupiter, V = -4.0 and -1.8
-  const PlanetSpots day = planetSpots(e, 0.0);
+  const PlanetSpots day = planetSpots(e, 0.0, 1.5e-4f);
   EXPECT_NEAR(glm::dot(day.spots[0].illuminance, glm::vec3(0.2126f, 0.7152f, 0.0722f)) /
                   starIlluminanceLux(planetOf(e, "venus").magnitude),
               1.0, 1e-4);
