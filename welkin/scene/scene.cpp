@@ -53,7 +53,8 @@ void describe(Output& o, ParamVisitor& v) {
       {"sun_disc", "", "draw the discs of sun and moon; false leaves their light out of an environment map"},
       o.sunDisc);
   v.value({"stars", "",
-           "draw stars and planets when the sun is down, Venus by day too, whatever sun_disc says; none over "
+           "draw stars, planets and Milky Way when the sun is down, Venus by day too, whatever sun_disc "
+           "says; none over "
            "a sky box"},
           o.stars);
   v.value(

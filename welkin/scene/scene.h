@@ -52,7 +52,7 @@ struct Output {
   Quality quality = Quality::kMedium;
   std::optional<double> exposureEv;  // EV at ISO 100; absent: automatic
   bool sunDisc = true;  // draw the discs of sun and moon; false leaves their light out of an environment map
-  bool stars = true;    // draw stars and planets, where they are out
+  bool stars = true;    // draw stars, planets and Milky Way, where they are out
   double flare = 0.0;   // share of the sun's light that the lens scatters into a glow and ghosts
   std::int64_t frames = 1;
   double fps = 24.0;    // frames a second of video

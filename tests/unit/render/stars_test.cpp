@@ -243,7 +243,8 @@ TEST(StarPictures, ShowVenusBeforeSunset) {
       static_cast<float>(sky::starIlluminanceLux(venus.magnitude)) *
       sky::blackBodyColour(sky::starTemperatureK(venus.colour));
   const double expected = luminanceOf(&arriving.x);
-  EXPECT_NEAR((lightIn(wide) - lightIn(without(wide))) / expected, 1.0, 0.05);
+  // Of the tenth that is in its halo the still takes a part for grain.
+  EXPECT_NEAR((lightIn(wide) - lightIn(without(wide))) / expected, 1.0, 0.1);
   // The same paths with and without it.
   const auto traced = [&](const scene::SkyState& state) {
     const reference::SkyTracer tracer(state, {});
