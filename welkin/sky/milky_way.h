@@ -16,7 +16,7 @@
 // observations", and dust of 0.7 magnitudes a kpc, summed along the ray; less what the counted stars give
 // along the whole plane; times 0.62 and the counted stars' share of their mean at that latitude to the
 // power 1.15, so that dark clouds which hide those hide these. Shares and the bar's strength are chosen to
-// meet measured brightness (docs/theory.md).
+// meet measured brightness (docs/theory.md). tools/milky_way.py makes both.
 //
 // It fades out between 33 and 45 degrees from the plane, where a tenth of the airglow is left of it at most.
 // Not in it: the Magellanic Clouds, nebulae.
