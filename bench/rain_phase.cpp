@@ -15,12 +15,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
@@ -63,15 +63,8 @@ glm::dvec3 colourOf(double wavelengthUm) {
                            lobe(-0.065, 501.1, 0.0490, 0.0382),
                        lobe(0.821, 568.8, 0.0213, 0.0247) + lobe(0.286, 530.9, 0.0613, 0.0322),
                        lobe(1.217, 437.0, 0.0845, 0.0278) + lobe(0.681, 459.0, 0.0385, 0.0725));
-  const glm::dmat3 rgbFromXyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314,
-                              0.0415560, 1.0572252);
   constexpr double kSunK = 5778.0;
-  return rgbFromXyz * xyz /
-         (std::pow(wavelengthUm, 5.0) * (std::exp(14387.8 / (wavelengthUm * kSunK)) - 1.0));
-}
-
-double luminance(const glm::dvec3& c) {
-  return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722));
+  return rgbFromXyz(xyz) / (std::pow(wavelengthUm, 5.0) * (std::exp(14387.8 / (wavelengthUm * kSunK)) - 1.0));
 }
 
 // Sums over spheres.
@@ -189,7 +182,7 @@ std::vector<Row> rowsOf(const std::vector<glm::dvec3>& phase) {
   add(179.0, 180.1, 0.25);
   for (Row& row : rows) {
     // The red rim of the primary bow has a colour that screens have not: towards grey until they have.
-    const double y = luminance(row.phase), least = std::min({row.phase.x, row.phase.y, row.phase.z});
+    const double y = luminanceOf(&row.phase.x), least = std::min({row.phase.x, row.phase.y, row.phase.z});
     if (least < kLeastOfLuminance * y)
       row.phase = glm::mix(glm::dvec3(y), row.phase, (1.0 - kLeastOfLuminance) * y / (y - least));
   }

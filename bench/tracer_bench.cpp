@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/error.h"
 #include "welkin/reference/sky_tracer.h"
 #include "welkin/scene/scene_file.h"
@@ -21,10 +22,6 @@ double processorS() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-double luminanceOf(const glm::dvec3& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
-
 struct Pixel {
   double mean, variance;  // of a path
 };
@@ -33,7 +30,7 @@ Pixel trace(const reference::SkyTracer& tracer, int x, int y, double& events) {
   double sum = 0.0, squares = 0.0;
   for (std::uint64_t k = 0; k < kTracerPaths; ++k) {
     const reference::SkySample s = tracer.trace(x, y, k);
-    const double l = luminanceOf(s.luminance);
+    const double l = luminanceOf(&s.luminance.x);
     sum += l;
     squares += l * l;
     events += s.events;

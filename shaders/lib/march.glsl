@@ -137,6 +137,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
     scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
   }
 #else
+  const float rain = 0.0;
   CloudScattering scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
 #endif
   // Light from above comes into a deck through its top, and into a cloud among others through its sides.
@@ -144,11 +145,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   LightWeights weights = lightWeights(depths, view.cosSun, view.height);
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
-#ifdef WELKIN_RAIN
   sun += (1.0 - ice - rain) * exp(-depths.toSun) * phases.beyondFit;
-#else
-  sun += (1.0 - ice) * exp(-depths.toSun) * phases.beyondFit;
-#endif
 #endif
 #ifdef WELKIN_RAIN
   sun += rain * exp(-depths.toSun) * vec3(phases.rain);

@@ -10,8 +10,8 @@
 WELKIN_CONST int kStarRowBits = 10;        // texels in a row, as a power of two
 WELKIN_CONST float kWidestPixelRad = 0.128f;  // rad; pixels that are larger are taken for it
 
-WELKIN_CONST float kSpotPx = 1.75f;     // radius; its sum over pixels is within 2 % wherever their centres lie
-WELKIN_CONST float kHaloShare = 0.1f;   // of the light of those 1 magnitude brighter than V = 4.5, and more
+WELKIN_CONST float kSpotPx = 1.75f;      // radius; its sum over pixels is within 2 % wherever their centres lie
+WELKIN_CONST float kHaloShare = 0.1f;    // of the light of those 1 magnitude brighter than V = 4.5, and more
 WELKIN_CONST float kHaloGrowth = 0.33f;  // of the radius a magnitude; chosen by eye
 
 // Share of a spot's illuminance for each sr, away from its middle.

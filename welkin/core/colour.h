@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <glm/vec3.hpp>
 
 namespace welkin {
 
@@ -13,8 +14,16 @@ T linearOfSrgb(T srgb) {
 }
 
 // Luminance of a linear Rec. 709 triple, in the unit of the triple.
-constexpr float luminanceOf(const float* rgb) {
-  return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+template <class T>
+constexpr T luminanceOf(const T* rgb) {
+  return T(0.2126) * rgb[0] + T(0.7152) * rgb[1] + T(0.0722) * rgb[2];
+}
+
+// Of CIE 1931 tristimulus values; white is D65.
+inline glm::dvec3 rgbFromXyz(const glm::dvec3& xyz) {
+  return {3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
+          -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
+          0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z};
 }
 
 }  // namespace welkin

@@ -23,10 +23,6 @@ double rounded(double x) {
   return static_cast<double>(high) + static_cast<double>(static_cast<float>(x - static_cast<double>(high)));
 }
 
-double luminanceOf(const glm::dvec3& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
-
 std::uint64_t numberOf(const SkyFilm::State& state, const char* key) {
   const auto found = state.texts.find(key);
   std::uint64_t n = 0;
@@ -54,7 +50,7 @@ void SkyFilm::addPass(const SkyTracer& tracer, const std::function<void()>& paus
   });
   for (std::size_t i = 0; i < pixels; ++i) {
     const SkySample& s = pass[i];
-    const double luminance = luminanceOf(s.luminance);
+    const double luminance = luminanceOf(&s.luminance.x);
     const double add[kSums] = {s.luminance.x, s.luminance.y, s.luminance.z, luminance * luminance,
                                s.cloud ? 1.0 : 0.0};
     for (int k = 0; k < kSums; ++k) sum(i, k) = rounded(sum(i, k) + add[k]);
@@ -83,7 +79,8 @@ Image<float> SkyFilm::error() const {
   const auto n = static_cast<double>(samples_);
   if (samples_ < 2) return image;
   for (std::size_t i = 0; i < image.data.size(); ++i) {
-    const double mean = luminanceOf({sum(i, kRed), sum(i, kGreen), sum(i, kBlue)}) / n;
+    const std::array<double, 3> sums = {sum(i, kRed), sum(i, kGreen), sum(i, kBlue)};
+    const double mean = luminanceOf(sums.data()) / n;
     image.data[i] =
         static_cast<float>(std::sqrt(std::max(sum(i, kSquares) / n - mean * mean, 0.0) / (n - 1.0)));
   }
@@ -95,7 +92,7 @@ double SkyFilm::meanRelativeError() const {
   const Image<float> errors = error(), picture = luminance();
   double mean = 0.0, relative = 0.0;
   const auto pixels = static_cast<double>(errors.data.size());
-  auto at = [&](std::size_t i) { return static_cast<double>(welkin::luminanceOf(&picture.data[3 * i])); };
+  auto at = [&](std::size_t i) { return static_cast<double>(luminanceOf(&picture.data[3 * i])); };
   for (std::size_t i = 0; i < errors.data.size(); ++i) mean += at(i) / pixels;
   if (mean <= 0.0) return 0.0;
   for (std::size_t i = 0; i < errors.data.size(); ++i)

@@ -185,10 +185,6 @@ void SkyTextures::bindPlanets(gpu::Program& program, const scene::SkyState& stat
 void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
                             StarsMade made) {
   if (!program.has("uStars")) return;
-  if (milkyWay_.id() == 0)
-    milkyWay_ =
-        gpu::Texture2D(sky::milkyWay(), {.format = gpu::Format::kRgba32F, .wrapX = gpu::Wrap::kRepeat});
-  program.bind("uMilkyWay", milkyWay_);
   bindPlanets(program, state, pixelRad);
   constexpr gpu::TextureOptions kTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
   const bool out = sky::starlightShare(state.ephemeris.sun.elevationDeg) > 0.0f;
@@ -196,8 +192,13 @@ void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state,
     if (noStars_.id() == 0) noStars_ = gpu::Texture2D(Image<float>(1, 1, 4), kTexels);
     program.bind("uStars", noStars_);  // which holds none
     program.set("uStarCells", 1);
+    program.bind("uMilkyWay", noStars_);
     return;
   }
+  if (milkyWay_.id() == 0)
+    milkyWay_ =
+        gpu::Texture2D(sky::milkyWay(), {.format = gpu::Format::kRgba32F, .wrapX = gpu::Wrap::kRepeat});
+  program.bind("uMilkyWay", milkyWay_);
   if (starsTime_ != state.scene.time) {
     for (Stars& stars : stars_) stars = {};
     starsTime_ = state.scene.time;

@@ -54,8 +54,7 @@ void describe(Output& o, ParamVisitor& v) {
       o.sunDisc);
   v.value({"stars", "",
            "draw stars, planets and Milky Way when the sun is down, Venus by day too, whatever sun_disc "
-           "says; none over "
-           "a sky box"},
+           "says; none over a sky box"},
           o.stars);
   v.value(
       {"flare", "",

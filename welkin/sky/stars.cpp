@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/units.h"
 
 namespace welkin::sky {
@@ -41,12 +42,8 @@ glm::vec3 blackBodyColour(double temperatureK) {
   const double y = k < 2222.0   ? ((-1.1063814 * x - 1.34811020) * x + 2.18555832) * x - 0.20219683
                    : k < 4000.0 ? ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
                                 : ((3.0817580 * x - 5.87338670) * x + 3.75112997) * x - 0.37001483;
-  const double bigX = x / y, bigZ = (1.0 - x - y) / y;
-  const glm::dvec3 rgb = glm::max(glm::dvec3(3.2404542 * bigX - 1.5371385 - 0.4985314 * bigZ,
-                                             -0.9692660 * bigX + 1.8760108 + 0.0415560 * bigZ,
-                                             0.0556434 * bigX - 0.2040259 + 1.0572252 * bigZ),
-                                  glm::dvec3(0.0));
-  return glm::vec3(rgb / glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)));
+  const glm::dvec3 rgb = glm::max(rgbFromXyz({x / y, 1.0, (1.0 - x - y) / y}), glm::dvec3(0.0));
+  return glm::vec3(rgb / luminanceOf(&rgb.x));
 }
 
 std::vector<StarLight> starLights(const UtcTime& time) {
