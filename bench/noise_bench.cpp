@@ -190,8 +190,10 @@ class Medians : public benchmark::BenchmarkReporter {
 
 std::vector<NoiseTime> measureNoise(int repetitions) {
   Register all = registerAll();
-  // Every argument is Google Benchmark's own.
+  // Every argument is Google Benchmark's own. Repetitions in a random order: what others do on the machine
+  // for some seconds then falls on all alike, and one thread and two can be compared.
   std::vector<std::string> flags = {"noise", "--benchmark_min_time=0.1",
+                                    "--benchmark_enable_random_interleaving=true",
                                     "--benchmark_repetitions=" + std::to_string(repetitions)};
   std::vector<char*> argv;
   for (std::string& f : flags) argv.push_back(f.data());
