@@ -345,7 +345,7 @@ int run(int argc, char** argv) {
     const reference::CloudMedium medium(*state.clouds, {0}, matter);
     const auto droplets =
         reference::dropletPhase(scene::dropletDiameterUm(state.weather), reference::DropletModel::kFit);
-    const auto crystals = reference::icePhase();
+    const auto crystals = reference::snowPhase();
     const reference::CloudSource source(medium, sun, droplets, crystals);
     const shared::PhasePeak peak = shared::dropletPeak(
         shared::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather))));
@@ -400,7 +400,7 @@ int run(int argc, char** argv) {
           row[kCosSun] = static_cast<float>(glm::dot(view, sun));
           row[kViewHeight] = static_cast<float>(view.z);
           row[kSunHeight] = static_cast<float>(sun.z);
-          const bool inIce = hit->matter == scene::CloudMatter::kIce;
+          const bool inIce = scene::isFrozen(hit->matter);
           row[kIce] = inIce ? 1.0f : 0.0f;
           row[kCover] = static_cast<float>(layer.oktas / kOktas);
           row[kDirect] = static_cast<float>(std::exp(-clouds.depth({p, sun}, 60e3, 30.0)));

@@ -10,34 +10,26 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <glm/common.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <vector>
 
-#include "welkin/core/colour.h"
-#include "welkin/core/error.h"
+#include "bench/phase_table.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
 #include "welkin/optics/mie_sphere.h"
 
-namespace welkin {
+namespace welkin::bench {
 namespace {
 
-constexpr int kFine = 9001;                       // angles of the sums
-constexpr double kFineDeg = 180.0 / (kFine - 1);  // between them
-constexpr int kSizes = 48, kWavelengths = 31;     // strata, a sphere each of both
+constexpr int kSizes = 48, kWavelengths = 31;  // strata, a sphere each of both
 constexpr double kLeastUm = 200.0, kMostUm = 4000.0;
 constexpr double kFirstUm = 0.395, kStepUm = 0.01;
 constexpr double kDiffractionToDeg = 4.0;  // up to where it hides the rest, which is level there
-constexpr double kSunRadiusDeg = 0.2665;
-constexpr double kLeastOfLuminance = 0.1;  // a colour's
 
 // A. H. Harvey, J. S. Gallagher and J. M. H. Levelt Sengers 1998, "Revised Formulation for the Refractive
 // Index of Water and Steam as a Function of Wavelength, Temperature and Density", at 10 C.
@@ -49,22 +41,6 @@ double indexOfWater(double wavelengthUm) {
                   1.58920570e-3 / l2 + 2.45934259e-3 / (l2 - kUv * kUv) + 0.900704920 / (l2 - kIr * kIr) -
                   1.66626219e-2 * kDensity * kDensity);
   return std::sqrt((1.0 + 2.0 * r) / (1.0 - r));
-}
-
-// What a wavelength of sunlight counts for in each colour, up to a factor of the colour. Eyes: C. Wyman,
-// P.-P. Sloan and P. Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions".
-glm::dvec3 colourOf(double wavelengthUm) {
-  const double nm = 1000.0 * wavelengthUm;
-  const auto lobe = [nm](double a, double middle, double below, double above) {
-    const double t = (nm - middle) * (nm < middle ? below : above);
-    return a * std::exp(-0.5 * t * t);
-  };
-  const glm::dvec3 xyz(lobe(0.362, 442.0, 0.0624, 0.0374) + lobe(1.056, 599.8, 0.0264, 0.0323) +
-                           lobe(-0.065, 501.1, 0.0490, 0.0382),
-                       lobe(0.821, 568.8, 0.0213, 0.0247) + lobe(0.286, 530.9, 0.0613, 0.0322),
-                       lobe(1.217, 437.0, 0.0845, 0.0278) + lobe(0.681, 459.0, 0.0385, 0.0725));
-  constexpr double kSunK = 5778.0;
-  return rgbFromXyz(xyz) / (std::pow(wavelengthUm, 5.0) * (std::exp(14387.8 / (wavelengthUm * kSunK)) - 1.0));
 }
 
 // Sums over spheres.
@@ -123,107 +99,36 @@ std::vector<glm::dvec3> withoutDiffraction(const Sums& sums) {
   return phase;
 }
 
-// Over the sun's disc and over the angles that the table's row stands for.
-glm::dvec3 seenAt(const std::vector<glm::dvec3>& phase, double deg, double widthDeg) {
-  constexpr int kRings = 12, kAround = 48, kAcross = 20;
-  glm::dvec3 sum(0.0);
-  double count = 0.0;
-  for (int k = 0; k < kAcross; ++k) {
-    const double at = deg + widthDeg * ((k + 0.5) / kAcross - 0.5);
-    if (at < 0.0 || at > 180.0) continue;
-    for (int r = 0; r < kRings; ++r) {
-      const double out = radians(kSunRadiusDeg * std::sqrt((r + 0.5) / kRings));
-      for (int a = 0; a < kAround; ++a) {
-        const double c = std::cos(radians(at)) * std::cos(out) +
-                         std::sin(radians(at)) * std::sin(out) * std::cos(2.0 * kPi * (a + 0.5) / kAround);
-        const double x = std::min(degrees(std::acos(std::clamp(c, -1.0, 1.0))) / kFineDeg, kFine - 1.001);
-        const auto i = static_cast<std::size_t>(x);
-        const double share = x - static_cast<double>(i);
-        sum += (1.0 - share) * phase[i] + share * phase[i + 1];
-        ++count;
-      }
-    }
-  }
-  return sum / count;
-}
-
-struct Row {
-  double deg;
-  glm::dvec3 phase;
-};
-
-// Of what is linear between rows: the integral over the sphere of the function, and of it times the cosine.
-std::array<glm::dvec3, 2> integralsOf(const std::vector<Row>& rows) {
-  std::array<glm::dvec3, 2> sums{glm::dvec3(0.0), glm::dvec3(0.0)};
-  constexpr int kSteps = 64;
-  for (std::size_t i = 0; i + 1 < rows.size(); ++i)
-    for (int k = 0; k < kSteps; ++k) {
-      const double share = (k + 0.5) / kSteps, step = radians(rows[i + 1].deg - rows[i].deg),
-                   angle = radians(rows[i].deg) + share * step;
-      const glm::dvec3 p = ((1.0 - share) * rows[i].phase + share * rows[i + 1].phase) * (2.0 * kPi) *
-                           std::sin(angle) * (step / kSteps);
-      sums[0] += p;
-      sums[1] += p * std::cos(angle);
-    }
-  return sums;
-}
-
-std::vector<Row> rowsOf(const std::vector<glm::dvec3>& phase) {
-  std::vector<Row> rows;
-  const auto add = [&](double from, double to, double step) {
-    for (int k = 0; from + k * step < to - 1e-6; ++k) {
-      const double deg = from + k * step;
-      rows.push_back({deg, seenAt(phase, deg, step)});
-    }
-  };
-  add(0.0, 120.0, 2.0);
-  add(120.0, 146.0, 0.1);
-  add(146.0, 179.0, 1.0);
-  add(179.0, 180.1, 0.25);
-  for (Row& row : rows) {
-    // The red rim of the primary bow has a colour that screens have not: towards grey until they have.
-    const double y = luminanceOf(&row.phase.x), least = std::min({row.phase.x, row.phase.y, row.phase.z});
-    if (least < kLeastOfLuminance * y)
-      row.phase = glm::mix(glm::dvec3(y), row.phase, (1.0 - kLeastOfLuminance) * y / (y - least));
-  }
+std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase) {
+  std::vector<PhaseRow> rows;
+  addRows(phase, 0.0, 120.0, 2.0, rows);
+  addRows(phase, 120.0, 146.0, 0.1, rows);
+  addRows(phase, 146.0, 179.0, 1.0, rows);
+  addRows(phase, 179.0, 180.1, 0.25, rows);
   return rows;
 }
 
-void write(const char* path, double mmPerH, const std::vector<Row>& rows) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path, "w"), std::fclose);
-  if (!file)
-    throw IoError(fmt::format("{} cannot be written; expected a path in a folder that is there", path));
-  fmt::print(file.get(),
-             "// SPDX-License-Identifier: Apache-2.0\n"
-             "// Written by bench/rain_phase.cpp, which says what it is; drops of {} mm/h.\n"
-             "#pragma once\n\n#include <array>\n\nnamespace welkin::optics::detail {{\n\n"
-             "struct RainRow {{\n  float angleDeg;\n  std::array<float, 3> phase;  // 1/sr: red, green, "
-             "blue\n}};\n\n"
-             "// clang-format off\ninline constexpr RainRow kRainRows[] = {{\n",
-             mmPerH);
-  for (const Row& r : rows)
-    fmt::print(file.get(), "    {{{:#.4g}f, {{{:#.5g}f, {:#.5g}f, {:#.5g}f}}}},\n", r.deg, r.phase.x,
-               r.phase.y, r.phase.z);
-  fmt::print(file.get(), "}};\n// clang-format on\n\n}}  // namespace welkin::optics::detail\n");
-}
-
 }  // namespace
-}  // namespace welkin
+}  // namespace welkin::bench
 
 int main(int argc, char** argv) {
   using namespace welkin;
+  using namespace welkin::bench;
   if (argc < 2 || argc > 3) {
     fmt::print(stderr, "usage: rain_phase OUT [MM_PER_H]\n");
     return 2;
   }
   try {
     const double mmPerH = argc > 2 ? std::atof(argv[2]) : 10.0;
-    std::vector<Row> rows = rowsOf(withoutDiffraction(sumsOf(mmPerH)));
+    std::vector<PhaseRow> rows = rowsOf(withoutDiffraction(sumsOf(mmPerH)));
     const auto [whole, forward] = integralsOf(rows);
     fmt::print("integrals {:.4f} {:.4f} {:.4f}, mean cosines {:.4f} {:.4f} {:.4f}\n", whole.x, whole.y,
                whole.z, forward.x / whole.x, forward.y / whole.y, forward.z / whole.z);
-    for (Row& row : rows) row.phase /= whole;
-    write(argv[1], mmPerH, rows);
+    for (PhaseRow& row : rows) row.phase /= whole;
+    writePhaseTable(
+        argv[1], "Rain",
+        fmt::format("Written by bench/rain_phase.cpp, which says what it is; drops of {} mm/h.", mmPerH),
+        rows);
   } catch (const std::exception& e) {
     fmt::print(stderr, "rain_phase: {}\n", e.what());
     return 1;

@@ -10,6 +10,9 @@
 
 WELKIN_FIXED uniform CloudLayer uLayers[kMaxLayers];
 WELKIN_FIXED uniform float uLayerIce[kMaxLayers];    // 1: ice crystals, 0: droplets
+#ifdef WELKIN_HALOS
+WELKIN_FIXED uniform float uLayerCrystals[kMaxLayers];  // 1: ice that makes halos, 0: other matter
+#endif
 #ifdef WELKIN_RAIN
 WELKIN_FIXED uniform float uLayerRain[kMaxLayers];   // 1: drops of rain, 0: other matter
 #endif
@@ -32,6 +35,9 @@ struct CloudPoint {
   float clearM;      // where there is none: a distance within which it stays so
   float stepM;       // the longest step that resolves the layers here
   bool inside;       // between base and top of any layer
+#ifdef WELKIN_HALOS
+  float crystals;    // the part of the extinction that makes halos
+#endif
 #ifdef WELKIN_RAIN
   float rain;        // the part of the extinction that is rain
 #endif
@@ -73,16 +79,32 @@ void addLayer(CloudLayer layer, float ice, float cover, vec3 q, float surface, f
 
 // Second half: what is there.
 CloudPoint cloudsAtSurfaces(int band, vec3 q, float detail, CloudSurfaces surfaces) {
-#ifdef WELKIN_RAIN
+#if defined(WELKIN_HALOS) && defined(WELKIN_RAIN)
+  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false, 0.0, 0.0);
+#elif defined(WELKIN_HALOS) || defined(WELKIN_RAIN)
   CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false, 0.0);
+#else
+  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false);
+#endif
+#ifdef WELKIN_HALOS
+#define WELKIN_ADD_CRYSTALS(i) point.crystals += uLayerCrystals[i] * (point.extinction - others);
+#else
+#define WELKIN_ADD_CRYSTALS(i)
+#endif
+#ifdef WELKIN_RAIN
+#define WELKIN_ADD_RAIN(i) point.rain += uLayerRain[i] * (point.extinction - others);
+#else
+#define WELKIN_ADD_RAIN(i)
+#endif
+#if defined(WELKIN_HALOS) || defined(WELKIN_RAIN)
 #define WELKIN_ADD_LAYER(i, b)                                                               \
   if (band == b) {                                                                           \
     float others = point.extinction;                                                         \
     addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);     \
-    point.rain += uLayerRain[i] * (point.extinction - others);                               \
+    WELKIN_ADD_CRYSTALS(i)                                                                   \
+    WELKIN_ADD_RAIN(i)                                                                       \
   }
 #else
-  CloudPoint point = CloudPoint(0.0, 0.0, 0.0, vec4(0.0), 1e9, 1e9, false);
 #define WELKIN_ADD_LAYER(i, b) if (band == b) addLayer(uLayers[i], uLayerIce[i], uLayerCover[i], q, surfaces.s[i], detail, point);
 #endif
   WELKIN_EACH_LAYER(WELKIN_ADD_LAYER)

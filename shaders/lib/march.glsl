@@ -20,6 +20,9 @@ uniform DropletPhase uDroplets;
 #ifdef WELKIN_MIE
 uniform sampler2D uMieDroplets;   // red, green, blue by the scattering angle, from 0 to pi (welkin/optics/mie_droplets.h)
 #endif
+#ifdef WELKIN_HALOS
+uniform sampler2D uIcePhase;      // the same of the crystals of ice clouds (welkin/optics/ice_phase.h)
+#endif
 #ifdef WELKIN_RAIN
 uniform sampler2D uRainPhase;     // the same of rain (welkin/optics/rain_phase.h)
 #endif
@@ -52,9 +55,12 @@ const int kSurfaceHalvings = 3;   // of the step in which a surface was met
 // The phase functions of the first scattering along a ray, 1/sr.
 struct FirstPhases {
   float droplets;       // by the fit
-  float ice;
+  float ice;            // by two lobes
 #ifdef WELKIN_MIE
   vec3 beyondFit;       // what Mie's theory has for droplets, less the fit
+#endif
+#ifdef WELKIN_HALOS
+  vec3 beyondLobes;     // what crystals have, less the two lobes
 #endif
 #ifdef WELKIN_RAIN
   vec4 rain;            // the first scattering's by colour, and (w) of light scattered twice
@@ -146,6 +152,9 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   vec3 sun = vec3(scattered.sun);
 #ifdef WELKIN_MIE
   sun += (1.0 - ice - rain) * exp(-depths.toSun) * phases.beyondFit;
+#endif
+#ifdef WELKIN_HALOS
+  sun += point.crystals / point.extinction * exp(-depths.toSun) * phases.beyondLobes;
 #endif
 #ifdef WELKIN_RAIN
   sun += rain * exp(-depths.toSun) * vec3(phases.rain);
@@ -326,7 +335,7 @@ vec3 lightOfSheet(SheetSeen seen, vec3 dir, FirstPhases phases, float cosSun) {
 #define WELKIN_MARCH_BEGIN MarchState(vec3(0.0), 1.0, 0.0, 0.0, 0)
 #endif
 
-#if defined(WELKIN_MIE) || defined(WELKIN_RAIN)
+#if defined(WELKIN_MIE) || defined(WELKIN_HALOS) || defined(WELKIN_RAIN)
 // By the angle's tangent, as cosines know little of those near the glory; ends are middles of texels.
 vec4 phaseOfTable(sampler2D table, vec3 dir, float cosSun) {
   float angle = atan(length(cross(dir, uKeyDirection)), cosSun) / 3.14159265;
@@ -342,6 +351,9 @@ FirstPhases cloudPhases(vec3 dir, float cosSun) {
   phases.ice = phaseIce(cosSun);
 #ifdef WELKIN_MIE
   phases.beyondFit = vec3(phaseOfTable(uMieDroplets, dir, cosSun)) - phases.droplets;
+#endif
+#ifdef WELKIN_HALOS
+  phases.beyondLobes = vec3(phaseOfTable(uIcePhase, dir, cosSun)) - phases.ice;
 #endif
 #ifdef WELKIN_RAIN
   phases.rain = phaseOfTable(uRainPhase, dir, cosSun);

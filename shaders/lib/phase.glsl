@@ -76,7 +76,7 @@ struct PhasePeak {
 };
 WELKIN_FN PhasePeak dropletPeak(DropletPhase p) { return PhasePeak(1.0f - p.wDraine, p.gHg); }
 
-// Ice crystals of many shapes and sizes: two lobes, without halos.
+// Ice crystals of many shapes and sizes: two lobes, without halos, for snow and for light scattered more than once (welkin/optics/ice_phase.h).
 WELKIN_CONST float kIcePeakG = 0.92f;
 WELKIN_CONST float kIcePeakShare = 0.55f;
 WELKIN_CONST float kIceWideG = 0.55f;

@@ -34,6 +34,9 @@ float phaseHaze(float c, float g) {
 float phaseIce(float c) {
   return shared::phaseIce(c);
 }
+IcePeak icePeak() {
+  return {shared::kIcePeakShare, shared::kIcePeakG};
+}
 float draineMeanCosine(float g, float alpha) {
   return shared::draineMeanCosine(g, alpha);
 }

@@ -16,7 +16,12 @@ float phaseHenyeyGreenstein(float c, float g);
 float phaseDraine(float c, float g, float alpha);
 float phaseCornetteShanks(float c, float g);
 float phaseHaze(float c, float g);  // two lobes; g: mean cosine, up to 0.9
-float phaseIce(float c);            // crystals of many shapes, without halos
+float phaseIce(float c);            // crystals of many shapes, without halos, as snow has them
+// Its narrow lobe, Henyey and Greenstein's: share of the light, and mean cosine.
+struct IcePeak {
+  float share, g;
+};
+IcePeak icePeak();
 
 // How cloud droplets scatter: by the fit below, or by Mie's theory, with fogbow and glory.
 enum class DropletModel { kFit, kMie };

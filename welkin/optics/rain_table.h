@@ -2,17 +2,12 @@
 // Written by bench/rain_phase.cpp, which says what it is; drops of 10 mm/h.
 #pragma once
 
-#include <array>
+#include "welkin/optics/phase_rows.h"
 
 namespace welkin::optics::detail {
 
-struct RainRow {
-  float angleDeg;
-  std::array<float, 3> phase;  // 1/sr: red, green, blue
-};
-
 // clang-format off
-inline constexpr RainRow kRainRows[] = {
+inline constexpr PhaseRow kRainRows[] = {
     {0.000f, {1.2637f, 1.2498f, 1.2166f}},
     {2.000f, {1.2637f, 1.2498f, 1.2166f}},
     {4.000f, {1.2635f, 1.2492f, 1.2166f}},

@@ -34,6 +34,7 @@ CloudMedium::CloudMedium(const field::CloudField& field, const std::vector<int>&
     : density_(field), earth_(field.earthRadiusM()) {
   for (std::size_t i = 0; i < matter.size(); ++i) {
     if (matter[i] == Matter::kIce) ice_ |= 1u << i;
+    if (matter[i] == Matter::kSnow) snow_ |= 1u << i;
     if (matter[i] == Matter::kRain) rain_ |= 1u << i;
   }
   if (!layers.empty()) grid_.emplace(field, layers);
@@ -47,6 +48,7 @@ CloudMedium::Point CloudMedium::pointIn(unsigned layers, const glm::dvec3& p) co
     const float sigma = density_.extinction(static_cast<std::size_t>(i), q);
     point.extinction += sigma;
     if (ice_ >> i & 1) point.ice += sigma;
+    if (snow_ >> i & 1) point.snow += sigma;
     if (rain_ >> i & 1) point.rain += sigma;
   }
   return point;
@@ -93,8 +95,9 @@ std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, doubl
   double depth = freeDepth(random);
   walk(ray, end, [&](const Bounds& bounds, unsigned layers, double t0, double t1) {
     const double majorant = bounds.majorant;
-    const bool iceHere = (layers & ice_) != 0, rainHere = (layers & rain_) != 0,
-               dropletsHere = (layers & ~(ice_ | rain_)) != 0, mixed = iceHere + rainHere + dropletsHere > 1;
+    const bool iceHere = (layers & ice_) != 0, snowHere = (layers & snow_) != 0,
+               rainHere = (layers & rain_) != 0, dropletsHere = (layers & ~(ice_ | snow_ | rain_)) != 0,
+               mixed = iceHere + snowHere + rainHere + dropletsHere > 1;
     for (;;) {
       const double left = (t1 - t0) * majorant;
       if (depth >= left) {
@@ -105,13 +108,20 @@ std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, doubl
       const double u = unit(random) * majorant;
       // Below the least of the extinction it need not be known.
       if (u < static_cast<double>(bounds.minorant) && !mixed) {
-        collision = {t0, iceHere ? Matter::kIce : rainHere ? Matter::kRain : Matter::kDroplets};
+        collision = {t0, iceHere    ? Matter::kIce
+                         : snowHere ? Matter::kSnow
+                         : rainHere ? Matter::kRain
+                                    : Matter::kDroplets};
         return true;
       }
       const Point point = pointIn(layers, ray.at(t0));
       if (u < static_cast<double>(point.extinction)) {
-        const auto ice = static_cast<double>(point.ice), rain = static_cast<double>(point.rain);
-        collision = {t0, u < ice ? Matter::kIce : u < ice + rain ? Matter::kRain : Matter::kDroplets};
+        const auto ice = static_cast<double>(point.ice), orSnow = ice + static_cast<double>(point.snow),
+                   orRain = orSnow + static_cast<double>(point.rain);
+        collision = {t0, u < ice      ? Matter::kIce
+                         : u < orSnow ? Matter::kSnow
+                         : u < orRain ? Matter::kRain
+                                      : Matter::kDroplets};
         return true;
       }
       depth = freeDepth(random);

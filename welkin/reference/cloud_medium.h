@@ -48,7 +48,7 @@ class CloudMedium {
 
  private:
   struct Point {
-    float extinction = 0.0f, ice = 0.0f, rain = 0.0f;  // all, and what of it is ice, and rain
+    float extinction = 0.0f, ice = 0.0f, snow = 0.0f, rain = 0.0f;  // all, and what of it is each
   };
   using Bounds = MajorantGrid::Bounds;
   Point pointIn(unsigned layers, const glm::dvec3& p) const;
@@ -59,7 +59,7 @@ class CloudMedium {
   void walk(const Ray& ray, double end, F&& f) const;
 
   CloudDensity density_;
-  unsigned ice_ = 0, rain_ = 0;  // bit i for the field's layer i
+  unsigned ice_ = 0, snow_ = 0, rain_ = 0;  // bit i for the field's layer i
   Sphere earth_;
   std::optional<MajorantGrid> grid_;  // none: no layers
 };

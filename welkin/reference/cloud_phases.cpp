@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "welkin/core/units.h"
 #include "welkin/optics/mie_phase.h"
 #include "welkin/optics/phase.h"
-#include "welkin/optics/rain_phase.h"
 #include "welkin/reference/directions.h"
 
 namespace welkin::reference {
@@ -24,17 +24,17 @@ PhaseSampler dropletPhase(double diameterUm, DropletModel model) {
   return PhaseSampler::tabulated([=](double c) { return optics::phaseDroplet(static_cast<float>(c), fit); });
 }
 
-PhaseSampler icePhase() {
+PhaseSampler snowPhase() {
   return PhaseSampler::tabulated([](double c) { return optics::phaseIce(static_cast<float>(c)); });
 }
 
-RainPhase::RainPhase()
-    : table_(optics::rainPhase()), mean_(PhaseSampler::tabulated([this](double c) {
+ColourPhase::ColourPhase(Image<float> table)
+    : table_(std::move(table)), mean_(PhaseSampler::tabulated([this](double c) {
         const glm::dvec3 p = density(c);
         return (p.x + p.y + p.z) / 3.0;
       })) {}
 
-glm::dvec3 RainPhase::density(double cosine) const {
+glm::dvec3 ColourPhase::density(double cosine) const {
   const double at = std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi * (table_.width - 1);
   const int i = std::min(static_cast<int>(at), table_.width - 2);
   glm::dvec3 p;

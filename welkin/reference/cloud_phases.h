@@ -17,14 +17,15 @@ namespace welkin::reference {
 using optics::DropletModel;  // Mie's: mean of three wavelengths, without colours
 
 PhaseSampler dropletPhase(double diameterUm, DropletModel model);
-PhaseSampler icePhase();  // as shaders/lib/march.glsl has it
+PhaseSampler snowPhase();  // phaseIce() of optics/phase.h
 
-// Rain scatters colours by different angles. Directions are drawn by the mean of the three.
-class RainPhase {
+// Rain and ice scatter colours by different angles. Directions are drawn by the mean of the three.
+class ColourPhase {
  public:
-  RainPhase();
+  // table: as those of optics/rain_phase.h and optics/ice_phase.h.
+  explicit ColourPhase(Image<float> table);
   const PhaseSampler& mean() const { return mean_; }
-  // 1/sr, of red, green and blue: that of optics/rain_phase.h.
+  // 1/sr, of red, green and blue: that of the table.
   glm::dvec3 density(double cosine) const;
 
  private:

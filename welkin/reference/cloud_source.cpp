@@ -35,7 +35,7 @@ double CloudSource::byPeaks(const glm::dvec3& p, const glm::dvec3& view, bool is
   while (chain.count > 0) {
     const Ray ray{at, chain.ways[--chain.count]};
     const auto collision = medium_.collide(ray, CloudMedium::kToGround, random);
-    if (!collision || collision->matter == CloudMedium::Matter::kIce) return 0.0;
+    if (!collision || scene::isFrozen(collision->matter)) return 0.0;
     at = ray.at(collision->t);
   }
   const Ray ray{at, toSun_};
@@ -54,7 +54,7 @@ CloudSourceSample CloudSource::trace(const glm::dvec3& p, const glm::dvec3& view
       break;
     }
     const glm::dvec3 at = ray.at(collision->t);
-    const bool inIce = collision->matter == CloudMedium::Matter::kIce;
+    const bool inIce = scene::isFrozen(collision->matter);
     const PhaseSampler& phase = inIce ? ice_ : droplets_;
     const double c = glm::dot(ray.way, toSun_);
     const double value = phase.density(c) - (inIce ? 0.0 : peak_.integral() * peak_.density(c));

@@ -12,7 +12,9 @@
 
 #include "welkin/core/error.h"
 #include "welkin/core/glsl.h"
+#include "welkin/optics/ice_phase.h"
 #include "welkin/optics/phase.h"
+#include "welkin/optics/rain_phase.h"
 #include "welkin/reference/cloud_medium.h"
 #include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/directions.h"
@@ -99,7 +101,7 @@ struct SkyTracer::Impl {
         air(s.atmosphere->uniforms()),
         lights(s, air, earth),
         droplets(dropletPhase(scene::dropletDiameterUm(s.weather), settings.droplets)),
-        ice(icePhase()),
+        snow(snowPhase()),
         molecules(
             PhaseSampler::tabulated([](double c) { return optics::phaseRayleigh(static_cast<float>(c)); })),
         isotropic(PhaseSampler::henyeyGreenstein(0.0)),
@@ -124,8 +126,8 @@ struct SkyTracer::Impl {
   MetaballMedium balls;
   Air air;
   SkyLights lights;
-  PhaseSampler droplets, ice, molecules, isotropic;
-  RainPhase rain;
+  PhaseSampler droplets, snow, molecules, isotropic;
+  ColourPhase rain{optics::rainPhase()}, ice{optics::icePhase()};
   PhaseSampler peak;  // of the droplets: see gather()
   glm::dvec3 airglow;
   double airglowHeight;
@@ -207,7 +209,8 @@ struct SkyTracer::Impl {
     return collision;
   }
   const PhaseSampler& phaseOf(scene::CloudMatter matter) const {
-    return matter == scene::CloudMatter::kIce    ? ice
+    return matter == scene::CloudMatter::kIce    ? ice.mean()
+           : matter == scene::CloudMatter::kSnow ? snow
            : matter == scene::CloudMatter::kRain ? rain.mean()
                                                  : droplets;
   }
@@ -321,11 +324,12 @@ void SkyTracer::Impl::scatterInCloud(Path& path, const Collision& collision, Wor
   path.throughput *= collision.albedo;
   ++work.sample.events;
   const glm::dvec3 from = path.ray.way;
-  if (&phase == &rain.mean()) {
+  if (const ColourPhase* colours = &phase == &rain.mean() ? &rain : &phase == &ice.mean() ? &ice : nullptr) {
     gather(
-        path, p, peak.integral(), [&](const glm::dvec3& w) { return rain.density(glm::dot(from, w)); }, work);
+        path, p, peak.integral(), [&](const glm::dvec3& w) { return colours->density(glm::dot(from, w)); },
+        work);
     const double c = phase.sampleCosine(unit(random));
-    path.throughput *= rain.density(c) / phase.density(c);
+    path.throughput *= colours->density(c) / phase.density(c);
     path.ray = {p, turned(from, c, 2.0 * kPi * unit(random))};
     path.first = false;
     return;

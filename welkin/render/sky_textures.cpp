@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "welkin/optics/ice_phase.h"
 #include "welkin/optics/mie_droplets.h"
 #include "welkin/optics/rain_phase.h"
 #include "welkin/scene/cloud_shapes.h"
@@ -49,6 +50,8 @@ void SkyTextures::upload(const scene::SkyState& state, const sky::SkyTables& tab
 }
 
 void SkyTextures::updatePhases(const scene::SkyState& state) {
+  if (icePhase_.id() == 0 && scene::hasIce(state.scene, state.weather))
+    put(icePhase_, optics::icePhase(), kFull);
   if (rainPhase_.id() == 0 && scene::hasRain(state.scene, state.weather))
     put(rainPhase_, optics::rainPhase(), kFull);
   const double diameterUm = scene::dropletDiameterUm(state.weather);
@@ -151,6 +154,7 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uKeyLight", keyLight_);
   if (secondLight_.id() != 0) program.bind("uSecondLight", secondLight_);
   if (mieDiameterUm_) program.bind("uMieDroplets", mieDroplets_);
+  if (icePhase_.id() != 0) program.bind("uIcePhase", icePhase_);
   if (rainPhase_.id() != 0) program.bind("uRainPhase", rainPhase_);
   program.bind("uAerialInscatter", inscatter_);
   program.bind("uAerialTransmittance", through_);

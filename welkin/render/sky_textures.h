@@ -73,7 +73,7 @@ class SkyTextures {
   gpu::Texture2D transmittance_, skyView_, keyLight_, secondLight_;
   gpu::Texture3D inscatter_, through_;
   std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of
-  gpu::Texture2D mieDroplets_, rainPhase_;
+  gpu::Texture2D mieDroplets_, icePhase_, rainPhase_;
   struct Stars {
     gpu::Texture2D texture;
     int cells = 0;

@@ -65,12 +65,18 @@ bool isVolumeInField(const Scene& scene, const weather::Weather& weather, std::s
 
 CloudMatter matterInField(const Scene& scene, const weather::Weather& weather, std::size_t index) {
   const LayerOfField layer = layerOfField(scene, weather, index);
-  if (layer.isShaft) return fallsAsSnow(weather) ? CloudMatter::kIce : CloudMatter::kRain;
+  if (layer.isShaft) return fallsAsSnow(weather) ? CloudMatter::kSnow : CloudMatter::kRain;
   return isIce(weather.layers[layer.of].genus) ? CloudMatter::kIce : CloudMatter::kDroplets;
 }
 
 bool hasRain(const Scene& scene, const weather::Weather& weather) {
   return !fallsAsSnow(weather) && rainingLayers(scene, weather).count > 0;
+}
+
+bool hasIce(const Scene& scene, const weather::Weather& weather) {
+  return std::any_of(weather.layers.begin(), weather.layers.end(), [&](const weather::Layer& layer) {
+    return isIce(layer.genus) && isVolume(scene, layer);
+  });
 }
 
 field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::Layer& layer,

@@ -28,10 +28,15 @@ struct LayerOfField {
 LayerOfField layerOfField(const Scene& scene, const weather::Weather& weather, std::size_t index);
 // Whether it is drawn as a volume, and what scatters light in it.
 bool isVolumeInField(const Scene& scene, const weather::Weather& weather, std::size_t index);
-enum class CloudMatter { kDroplets, kIce, kRain };
+// Ice is crystals that grow by themselves, and snow what they make when they cling together: without halos.
+enum class CloudMatter { kDroplets, kIce, kSnow, kRain };
+constexpr bool isFrozen(CloudMatter matter) {
+  return matter == CloudMatter::kIce || matter == CloudMatter::kSnow;
+}
 CloudMatter matterInField(const Scene& scene, const weather::Weather& weather, std::size_t index);
-// Whether there is a layer of rain.
+// Whether there is a layer of rain, or of ice.
 bool hasRain(const Scene& scene, const weather::Weather& weather);
+bool hasIce(const Scene& scene, const weather::Weather& weather);
 
 // The shaft beneath a layer, whose shape is settled (its threshold above all) and which lies above the
 // ground.

@@ -64,17 +64,19 @@ void putAirLight(Refill& u, std::string_view owner, const scene::AirLight& light
 Uniforms cloudUniforms(const scene::SkyState& state) {
   Uniforms u;
   const auto layers = state.clouds->layers();
-  std::vector<float> ice(field::kMaxLayers, 0.0f), rain = ice, cover = ice;
+  std::vector<float> ice(field::kMaxLayers, 0.0f), crystals = ice, rain = ice, cover = ice;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::forEachMember(layers[i],
                          [&](const char* name, auto value) { u.emplace_back(layerMember(i, name), value); });
     const std::size_t of = scene::layerOfField(state.scene, state.weather, i).of;
     const scene::CloudMatter matter = scene::matterInField(state.scene, state.weather, i);
-    ice[i] = matter == scene::CloudMatter::kIce ? 1.0f : 0.0f;
+    crystals[i] = matter == scene::CloudMatter::kIce ? 1.0f : 0.0f;
+    ice[i] = scene::isFrozen(matter) ? 1.0f : 0.0f;
     rain[i] = matter == scene::CloudMatter::kRain ? 1.0f : 0.0f;
     cover[i] = static_cast<float>(state.weather.layers[of].oktas / kOktas);
   }
   u.emplace_back("uLayerIce", ice);
+  u.emplace_back("uLayerCrystals", crystals);
   u.emplace_back("uLayerRain", rain);
   u.emplace_back("uLayerCover", cover);
   return u;
@@ -332,6 +334,7 @@ ShaderDefines marchDefines(const LightVolumeLayout& layout, double eyeM) {
 
 void addPhaseDefines(const scene::SkyState& state, ShaderDefines& defines) {
   if (state.scene.droplets == optics::DropletModel::kMie) defines.emplace_back("WELKIN_MIE", "1");
+  if (scene::hasIce(state.scene, state.weather)) defines.emplace_back("WELKIN_HALOS", "1");
   if (scene::hasRain(state.scene, state.weather)) defines.emplace_back("WELKIN_RAIN", "1");
 }
 

@@ -28,7 +28,7 @@ TEST(CloudSource, IsWhatTheTracerSees) {
     const SkyTracer tracer(state, {});
     const CloudMedium medium(*state.clouds, {0}, {scene::matterInField(state.scene, state.weather, 0)});
     const auto droplets = dropletPhase(scene::dropletDiameterUm(state.weather), DropletModel::kFit);
-    const auto ice = icePhase();
+    const auto ice = snowPhase();
     const glm::dvec3 sun(state.lights[0].direction);
     const CloudSource source(medium, sun, droplets, ice);
     constexpr int kPaths = 40000;

@@ -109,7 +109,7 @@ TEST(Rainbow, IsAsBrightAsTraced) {
 // function, of the very table that paths have, times the light that comes to drops and from them to the eye.
 TEST(Rainbow, HasTheTablesPhaseFunction) {
   const Image<float> table = optics::rainPhase();
-  const reference::RainPhase ofTracer;
+  const reference::ColourPhase ofTracer(table);
   for (int i = 0; i < optics::kRainAngles; i += 7) {
     const glm::dvec3 p = ofTracer.density(std::cos(kPi * i / (optics::kRainAngles - 1)));
     for (int c = 0; c < 3; ++c) {

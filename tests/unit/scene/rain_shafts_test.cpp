@@ -157,11 +157,11 @@ TEST(RainShafts, AreOfVolumesAndOfTwoAtMost) {
   EXPECT_EQ(matterInField(scene, weather, 3), CloudMatter::kDroplets);
   EXPECT_TRUE(hasRain(scene, weather));
   weather.precipitation = weather::PrecipitationKind::kSnow;
-  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kIce);
+  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kSnow);
   EXPECT_FALSE(hasRain(scene, weather));
   weather.precipitation = weather::PrecipitationKind::kNone;
   weather.temperatureC = -11.0;
-  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kIce);
+  EXPECT_EQ(matterInField(scene, weather, 4), CloudMatter::kSnow);
   EXPECT_FALSE(hasRain(scene, weather));
   weather.layers[3].baseM = 0.0;  // nothing falls out of fog
   EXPECT_EQ(rainingLayers(scene, weather).count, 0u);

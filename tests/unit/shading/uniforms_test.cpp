@@ -190,6 +190,28 @@ TEST(Uniforms, RainHasABandBeneathItsCloud) {
   EXPECT_EQ(valueOf<std::vector<float>>(uniforms, "uLayerCover")[2], static_cast<float>(at->oktas / 8.0));
 }
 
+TEST(Uniforms, HalosAreCompiledInForIceAlone) {
+  const auto halos = [](const scene::SkyState& state) {
+    ShaderDefines defines;
+    addPhaseDefines(state, defines);
+    return std::ranges::count(defines, "WELKIN_HALOS", &ShaderDefines::value_type::first);
+  };
+  scene::Scene snow = cloudyScene(40.0, {Genus::kCirrostratus, Genus::kCumulonimbus});
+  const auto at = std::ranges::find(snow.layers, Genus::kCumulonimbus, &weather::Layer::genus);
+  at->rainMmPerH = 5.0;
+  scene::SkyState state = scene::buildSky(snow, 0.0);
+  state.weather.precipitation = weather::PrecipitationKind::kSnow;
+  EXPECT_EQ(halos(state), 1);
+  const Uniforms uniforms = cloudUniforms(state);
+  const auto crystals = valueOf<std::vector<float>>(uniforms, "uLayerCrystals");
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(crystals[i], state.weather.layers[i].genus == Genus::kCirrostratus ? 1.0f : 0.0f);
+  EXPECT_EQ(crystals[2], 0.0f);  // flakes
+  EXPECT_EQ(valueOf<std::vector<float>>(uniforms, "uLayerIce")[2], 1.0f);
+  EXPECT_EQ(halos(scene::buildSky(cloudyScene(40.0, {Genus::kCumulonimbus, Genus::kAltostratus}), 0.0)), 0);
+  EXPECT_EQ(halos(scene::buildSky(clearScene(40.0), 0.0)), 0);
+}
+
 TEST(Uniforms, BetterQualityTakesFinerSteps) {
   const scene::Quality order[] = {scene::Quality::kLow, scene::Quality::kMedium, scene::Quality::kHigh,
                                   scene::Quality::kUltra};

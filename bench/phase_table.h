@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the programs share that write tables of phase functions, welkin/optics/*_table.h: colours of
+// wavelengths of sunlight, the mean over the sun's disc, and the file. Angles are of scattering, in degrees;
+// colours linear Rec. 709.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+namespace welkin::bench {
+
+inline constexpr int kFine = 9001;                       // angles of the sums, from 0 to 180 degrees
+inline constexpr double kFineDeg = 180.0 / (kFine - 1);  // between them
+
+// What a wavelength of sunlight counts for in each colour, up to a factor of the colour.
+glm::dvec3 colourOf(double wavelengthUm);
+
+struct PhaseRow {
+  double deg;
+  glm::dvec3 phase;  // 1/sr
+};
+
+// Of a phase function at the angles of the sums: rows from an angle to before another, each the mean over the
+// sun's disc and over the angles that the row stands for. A colour that screens have not is moved towards
+// grey of its luminance until they have.
+void addRows(const std::vector<glm::dvec3>& phase, double fromDeg, double toDeg, double stepDeg,
+             std::vector<PhaseRow>& rows);
+
+// Of what is linear between rows: the integral over the sphere of the function, and of it times the cosine.
+std::array<glm::dvec3, 2> integralsOf(const std::vector<PhaseRow>& rows);
+
+// Writes the header. matter: "Rain" makes kRainRows; by: what its second line says. Throws
+// IoError.
+void writePhaseTable(const char* path, const std::string& matter, const std::string& by,
+                     const std::vector<PhaseRow>& rows);
+
+}  // namespace welkin::bench

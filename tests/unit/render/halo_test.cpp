@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Halos in marched ice clouds, against paths through the same ice.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "tests/testing/skies.h"
+#include "welkin/core/units.h"
+#include "welkin/reference/sky_tracer.h"
+#include "welkin/render/sky_renderer.h"
+#include "welkin/scene/sky_state.h"
+
+namespace welkin::render {
+namespace {
+
+using weather::Genus;
+
+constexpr double kSunDeg = 40.0, kFovDeg = 0.4, kSunLux = 60000.0;
+constexpr float kExtinction = 1e-4f;
+constexpr int kSide = 8;
+
+// A thin veil all over, in the sun alone: without air.
+scene::SkyState veil(Genus genus) {
+  scene::Scene s = testing::sized(testing::cloudyScene(kSunDeg, {genus}, 8.0), kSide, kSide);
+  s.layers[0].baseM = 8000.0;
+  s.layers[0].topM = 9000.0;
+  scene::SkyState state = testing::airlessSky(s, kSunLux);
+  state.ambient = {};
+  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
+  layers.at(0).threshold = -50.0f;
+  layers.at(0).extinction = kExtinction;
+  const auto noise = state.clouds->sharedNoise();  // a copy, which outlives the field
+  state.clouds.emplace(noise, layers, 0.0);
+  return state;
+}
+
+// Looks so many degrees past the sun, as high as it stands.
+scene::SkyState lookingAside(scene::SkyState state, double asideDeg) {
+  const double sunDeg = state.ephemeris.sun.elevationDeg;
+  state.headingDeg = state.ephemeris.sun.azimuthDeg +
+                     2.0 * degrees(std::asin(std::sin(radians(0.5 * asideDeg)) / std::cos(radians(sunDeg))));
+  state.scene.camera.pitchDeg = sunDeg;
+  state.scene.camera.fovDeg = kFovDeg;
+  return state;
+}
+
+glm::dvec3 drawn(SkyRenderer& renderer, const scene::SkyState& state) {
+  const Image<float> picture = renderer.draw(state).luminance;
+  glm::dvec3 sum(0.0);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(picture.at(x, y, c)) / (kSide * kSide);
+  return sum;
+}
+
+glm::dvec3 traced(const scene::SkyState& state, int paths) {
+  const reference::SkyTracer tracer(state, {});
+  glm::dvec3 sum(0.0);
+  for (int i = 0; i < paths; ++i)
+    sum += tracer.trace(i % kSide, i / kSide % kSide, static_cast<std::uint64_t>(i)).luminance /
+           static_cast<double>(paths);
+  return sum;
+}
+
+// Light scattered more than once is the network's, which has some too much of it in a veil without air: of
+// the faint light far out a quarter. What the halo has more than the sky inside it is exact.
+TEST(Halo, IsAsBrightAsTraced) {
+  constexpr int kPaths = 6000;
+  SkyRenderer renderer({.debug = true});
+  const scene::SkyState ice = veil(Genus::kCirrostratus);
+  const scene::SkyState dark = lookingAside(ice, 20.5);
+  const glm::dvec3 inside = drawn(renderer, dark), insideTraced = traced(dark, kPaths);
+  for (const double asideDeg : {22.1, 24.0, 46.5}) {
+    const scene::SkyState state = lookingAside(ice, asideDeg);
+    const glm::dvec3 l = drawn(renderer, state), truth = traced(state, kPaths);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(l[c], truth[c], (asideDeg < 30.0 ? 0.12 : 0.35) * truth[c])
+          << asideDeg << " degrees, colour " << c;
+      EXPECT_NEAR(l[c] - inside[c], truth[c] - insideTraced[c], 0.05 * insideTraced[c])
+          << asideDeg << " degrees, colour " << c;
+    }
+  }
+}
+
+// Red inside, blue outside, and not in what is of droplets.
+TEST(Halo, IsInIceAlone) {
+  SkyRenderer renderer({.debug = true});
+  const scene::SkyState ice = veil(Genus::kCirrostratus);
+  const glm::dvec3 inside = drawn(renderer, lookingAside(ice, 20.8)),
+                   red = drawn(renderer, lookingAside(ice, 21.9)),
+                   blue = drawn(renderer, lookingAside(ice, 22.6));
+  EXPECT_GT(red.x, 1.25 * inside.x);
+  EXPECT_GT(blue.z, 1.2 * inside.z);
+  EXPECT_GT(red.x / red.z, 1.15 * inside.x / inside.z);
+  EXPECT_LT(blue.x / blue.z, inside.x / inside.z);
+  const scene::SkyState droplets = veil(Genus::kAltostratus);
+  const glm::dvec3 near = drawn(renderer, lookingAside(droplets, 20.8)),
+                   far = drawn(renderer, lookingAside(droplets, 22.1));
+  for (int c = 0; c < 3; ++c) EXPECT_LT(far[c], near[c]);
+}
+
+}  // namespace
+}  // namespace welkin::render
