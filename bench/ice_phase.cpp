@@ -45,6 +45,7 @@ constexpr double kRoughness = 0.5;                           // sigma of the til
 constexpr double kRouletteBelow = 0.02, kRouletteTo = 0.06;  // of a ray's light
 constexpr int kBlocks = 128;                                 // of rays
 constexpr double kStraightRad = 1e-6;
+constexpr double kBackFromDeg = 177.0;  // see evenBehind()
 
 // S. G. Warren and R. E. Brandt 2008, "Optical constants of ice from the ultraviolet to the microwave: A
 // revised compilation", at 266 K: each 0.01 um from 0.39 um.
@@ -273,6 +274,21 @@ Sums sumsOf(double roughness, std::uint64_t rays) {
   return all;
 }
 
+// Corners of right angles send rays back to where they came from, exactly. Faces of some tens of micrometres
+// spread that, by their diffraction, over a degree or two.
+void evenBehind(std::vector<glm::dvec3>& phase) {
+  const auto first = static_cast<std::size_t>(kBackFromDeg / kFineDeg);
+  glm::dvec3 sum(0.0);
+  double whole = 0.0;
+  for (std::size_t i = first; i < kFine; ++i) {
+    const double wide = std::max(std::sin(radians(kFineDeg * static_cast<double>(i))),
+                                 0.125 * radians(kFineDeg));  // of the half step at its end
+    sum += wide * phase[i];
+    whole += wide;
+  }
+  std::fill(phase.begin() + static_cast<std::ptrdiff_t>(first), phase.end(), sum / whole);
+}
+
 std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase) {
   std::vector<PhaseRow> rows;
   addRows(phase, 0.0, 12.0, 1.0, rows);
@@ -312,6 +328,7 @@ int main(int argc, char** argv) {
         phase[i] += share * sums.turned[i] / sums.all / (2.0 * kPi * wide);
       }
     }
+    evenBehind(phase);
     std::vector<PhaseRow> rows = rowsOf(phase);
     const auto [whole, forward] = integralsOf(rows);
     fmt::print("of green light {:.4f} goes straight on\n", straight.y);
