@@ -21,7 +21,8 @@ picture() {
 for scene in clear_noon fair_weather_noon stratocumulus_golden_hour overcast_rain thunderstorm_night; do
   picture "$scene" "$demo/$scene.toml" --size 960x540
 done
-for scene in above_the_clouds sunset cirrus blue_hour starry_night glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
+for scene in above_the_clouds sunset cirrus blue_hour starry_night halo glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
+picture halo_moon "$here/halo.toml" --time 2026-04-01T22:30:00Z --look 165,35 --size 640x360
 picture rain "$here/rain.toml" --size 960x540
 for scene in rainbow rainbow_report; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture thunderstorm_day "$demo/thunderstorm_night.toml" --time 2026-09-26T09:00:00Z --size 960x540
