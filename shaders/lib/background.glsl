@@ -2,7 +2,7 @@
 // What lies behind the clouds: the clear sky with its discs, or the ground.
 //
 // Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
-// light that clouds let through to the ground at q. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
+// light that clouds let through to the ground at q. WELKIN_BEYOND: with stars, planets or Milky Way. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
 // the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
 #include "lib/ground.glsl"
@@ -18,15 +18,15 @@ uniform float uSunRadius;         // rad
 uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
-uniform int uBeyond;              // 1: stars, planets or Milky Way are drawn
+#ifdef WELKIN_BEYOND
 uniform mat3 uCelestialFromEnu;
 uniform sampler2D uMilkyWay;      // lib/milky_way.glsl
 // Shares of the stars' and of the Milky Way's light that are drawn, number of planets; of each planet its direction and least radius,
-// rad, then its illuminance above the atmosphere, lux, and how many magnitudes it is brighter than V = 4.5. A texture, as uniforms cost a
-// rasteriser on the processor by day too.
+// rad, then its illuminance above the atmosphere, lux, and how many magnitudes it is brighter than V = 4.5.
 uniform sampler2D uPlanets;
 uniform sampler2D uStars;         // lib/stars.glsl
 uniform int uStarCells;
+#endif
 #ifdef WELKIN_SKY_BOX
 uniform samplerCube uSkyBox;      // in the place of the clear sky
 uniform mat3 uBoxFromEnu;
@@ -81,23 +81,22 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
 }
 
-// Stars, planets and the Milky Way above the atmosphere, behind the moon. A loop that is not entered by day, as a rasteriser on the
-// processor runs both sides of a branch.
+// Stars, planets and the Milky Way above the atmosphere, behind the moon.
 vec3 starsBeyond(vec3 dir, float pixelRad) {
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < uBeyond; ++i) {
-    vec4 shares = texelFetch(uPlanets, ivec2(0, 0), 0);
-    vec3 celestial = uCelestialFromEnu * dir;
-    sum = shares.x * starLuminance(uStars, uStarCells, celestial, pixelRad);
-    sum += shares.y * vec3(textureLod(uMilkyWay, milkyWayAt(celestial), 0.0));
-    int planets = int(shares.z);
-    for (int p = 0; p < planets; ++p) {
-      vec4 place = texelFetch(uPlanets, ivec2(2 * p + 1, 0), 0), light = texelFetch(uPlanets, ivec2(2 * p + 2, 0), 0);
-      sum += vec3(light) * planetShare(dir - vec3(place), light.w, place.w, pixelRad);
-    }
-    sum *= 1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
+#ifdef WELKIN_BEYOND
+  vec4 shares = texelFetch(uPlanets, ivec2(0, 0), 0);
+  vec3 celestial = uCelestialFromEnu * dir;
+  vec3 sum = shares.x * starLuminance(uStars, uStarCells, celestial, pixelRad);
+  sum += shares.y * vec3(textureLod(uMilkyWay, milkyWayAt(celestial), 0.0));
+  int planets = int(shares.z);
+  for (int p = 0; p < planets; ++p) {
+    vec4 place = texelFetch(uPlanets, ivec2(2 * p + 1, 0), 0), light = texelFetch(uPlanets, ivec2(2 * p + 2, 0), 0);
+    sum += vec3(light) * planetShare(dir - vec3(place), light.w, place.w, pixelRad);
   }
-  return sum;
+  return sum * (1.0 - uDiscs * discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad));
+#else
+  return vec3(0.0);
+#endif
 }
 
 vec3 groundLuminance(vec3 dir, float distanceM) {

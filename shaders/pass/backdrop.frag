@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind thin clouds, for any OpenGL camera: the clear sky, the discs, the ground with the shadows of the sheets.
-// WELKIN_VOLUMES, WELKIN_SPLATS: and with those of volumes, of metaballs. WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
+// WELKIN_VOLUMES, WELKIN_SPLATS: and with those of volumes, of metaballs. WELKIN_BEYOND: and stars, planets and Milky Way. WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
 
 #include "lib/phase.glsl"
 #include "lib/atmosphere.glsl"
@@ -54,7 +54,10 @@ void main() {
   airShadows = textureLod(uAirShadows, px / (uAirShadowsPx * vec2(textureSize(uAirShadows, 0))), 0.0);
 #endif
 #if WELKIN_BACKDROP == 1
-  vec3 luminance = throughAtmosphere(dir, skyLuminance(dir), starsBeyond(dir, uPixelRad));
+  vec3 luminance = skyLuminance(dir);
+#ifdef WELKIN_BEYOND
+  luminance = throughAtmosphere(dir, luminance, starsBeyond(dir, uPixelRad));
+#endif
 #elif WELKIN_BACKDROP == 2
   vec3 luminance = groundThroughAir(dir, groundDistance(dir));
 #else

@@ -40,21 +40,32 @@ struct Others {
   static constexpr std::size_t kNumbers = 4;
 };
 
-gpu::Program backdropProgram(shading::BackdropKind kind, bool overSkyBox, const Others& others) {
+struct Behind {
+  bool skyBox = false, beyond = false;  // a box; stars, planets or the Milky Way
+};
+
+gpu::Program backdropProgram(shading::BackdropKind kind, const Behind& behind, const Others& others) {
   shading::ShaderDefines defines{{"WELKIN_EACH_LAYER(CALL)", ""},
                                  {"WELKIN_BACKDROP", std::to_string(static_cast<int>(kind))}};
-  if (overSkyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  if (behind.skyBox) defines.emplace_back("WELKIN_SKY_BOX", "1");
+  if (behind.beyond) defines.emplace_back("WELKIN_BEYOND", "1");
   if (others.volumes) defines.emplace_back("WELKIN_VOLUMES", "1");
   if (others.splats) defines.emplace_back("WELKIN_SPLATS", "1");
   return fullscreenProgram("pass/backdrop.frag", defines);
 }
 
-using Backdrops = std::array<gpu::Program, 3>;
+// By kind, and those of the sky once more with what is beyond it, so that no frame at dusk has to wait for
+// them.
+using Backdrops = std::array<gpu::Program, 5>;
 Backdrops backdropPrograms(const Others& others) {
   using shading::BackdropKind;
-  return {backdropProgram(BackdropKind::kAll, false, others),
-          backdropProgram(BackdropKind::kSky, false, others),
-          backdropProgram(BackdropKind::kGround, false, others)};
+  return {backdropProgram(BackdropKind::kAll, {}, others), backdropProgram(BackdropKind::kSky, {}, others),
+          backdropProgram(BackdropKind::kGround, {}, others),
+          backdropProgram(BackdropKind::kAll, {.beyond = true}, others),
+          backdropProgram(BackdropKind::kSky, {.beyond = true}, others)};
+}
+std::size_t backdropIndex(shading::BackdropKind kind, bool beyond) {
+  return static_cast<std::size_t>(kind) + (beyond && kind != shading::BackdropKind::kGround ? 3 : 0);
 }
 
 }  // namespace
@@ -194,7 +205,7 @@ void LiveSky::Impl::updateBox(const scene::SkyBox& wanted, const Others& with) {
     if (!wanted.empty()) box.emplace(wanted);
   }
   gpu::Program& p = boxBackdrops[with.number()];
-  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, true, with);
+  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, {.skyBox = true}, with);
 }
 
 // The state's ambient light knows of its volumes and metaballs; here are sheets beside them.
@@ -225,15 +236,18 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
       {shading::BackdropDisc{glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad)},
        shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
       state->scene.output.sunDisc);
-  Backdrops& programs = backdrops();
-  for (std::size_t kind = 0; kind < programs.size(); ++kind) {
+  tables.makeStars(*state, view.pixelRad);
+  const bool beyond = SkyTextures::isAnythingBeyond(*state, view.pixelRad);
+  using shading::BackdropKind;
+  for (const BackdropKind kind : {BackdropKind::kAll, BackdropKind::kSky, BackdropKind::kGround}) {
+    gpu::Program& p = backdrops()[backdropIndex(kind, beyond)];
     bool set = false;
     for (int i = 0; i < tiles.count; ++i) {
       const shading::BackdropTile& t = tiles.tiles[static_cast<std::size_t>(i)];
-      if (static_cast<std::size_t>(t.kind) != kind) continue;
-      if (!set) setBackdrop(programs[kind], view, target, options);
+      if (t.kind != kind) continue;
+      if (!set) setBackdrop(p, view, target, options);
       set = true;
-      triangle.draw(programs[kind], target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
+      triangle.draw(p, target, {.tile = gpu::Tile{t.x, t.y, t.width, t.height}});
     }
   }
 }
@@ -248,7 +262,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   p.set("uPixelRad", view.pixelRad);
   p.set("uScale", options.scale);
   tables.bind(p);
-  tables.bindStars(p, *state, view.pixelRad, SkyTextures::StarsMade::kEarly);
+  tables.bindStars(p, *state, view.pixelRad);
   clouds->bind(p);
   std::size_t shadows = 0;
   float mean = 1.0f;

@@ -54,6 +54,10 @@ std::vector<gpu::Tile> rowBands(int width, int height) {
   return bands;
 }
 
+float pixelRadOf(const scene::SkyState& state) {
+  return scene::middlePixelRad(scene::projectorOf(state));
+}
+
 }  // namespace
 
 struct SkyRenderer::Impl {
@@ -133,6 +137,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
   shading::addPhaseDefines(state, defines);
+  if (SkyTextures::isAnythingBeyond(state, pixelRadOf(state))) defines.emplace_back("WELKIN_BEYOND", "1");
   if (cloudLight == CloudLight::kSingle) defines.emplace_back("WELKIN_SINGLE_SCATTERING", "1");
   if (cloudLight == CloudLight::kOctaves) defines.emplace_back("WELKIN_OCTAVES_OF_SCATTERING", "1");
   gpu::Program& p = sky.with(defines);
@@ -149,7 +154,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
 void SkyRenderer::Impl::bind(gpu::Program& p, const scene::SkyState& state) {
   clouds->bind(p);
   tables.bind(p);
-  tables.bindStars(p, state, scene::middlePixelRad(scene::projectorOf(state)));
+  tables.bindStars(p, state, pixelRadOf(state));
   p.bind("uLightVolume", lightVolume.volume());
   p.bind("uFluence", lightVolume.fluence());
   sheets.bind(p);

@@ -17,7 +17,8 @@
 namespace welkin::render {
 namespace {
 
-constexpr gpu::TextureOptions kHalf{.format = gpu::Format::kRgba16F}, kFull{.format = gpu::Format::kRgba32F};
+constexpr gpu::TextureOptions kHalf{.format = gpu::Format::kRgba16F}, kFull{.format = gpu::Format::kRgba32F},
+    kStarTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
 
 constexpr int kWeights = 64;
 constexpr double kKeyS = scene::ClearSkyKey::kKeyS;
@@ -38,6 +39,18 @@ void put(Texture& texture, const Table& table, const gpu::TextureOptions& option
     texture = Texture(table, options);
   else
     texture.upload(table);  // tables of one kind have one size
+}
+
+// What is drawn of the stars' light, of the Milky Way's, and of planets.
+struct Beyond {
+  float stars = 0.0f, milkyWay = 0.0f;  // shares
+  sky::PlanetSpots planets;
+};
+Beyond beyond(const scene::SkyState& state, float pixelRad) {
+  if (!state.scene.output.stars) return {};
+  const double sunDeg = state.ephemeris.sun.elevationDeg;
+  return {sky::starlightShare(sunDeg), sky::milkyWayShare(sunDeg),
+          sky::planetSpots(state.ephemeris, state.scene.camera.eyeM, pixelRad)};
 }
 
 }  // namespace
@@ -160,60 +173,56 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uAerialTransmittance", through_);
 }
 
-// What lib/background.glsl finds in uPlanets.
-void SkyTextures::bindPlanets(gpu::Program& program, const scene::SkyState& state, float pixelRad) {
-  Image<float>& texels = planetTexels_;
-  if (texels.data.empty()) texels = Image<float>(2 * sky::kPlanetCount + 1, 1, 4);
-  const auto texel = [&](int i, const glm::vec3& v, float w) {
-    for (int c = 0; c < 3; ++c) texels.at(i, 0, c) = v[c];
-    texels.at(i, 0, 3) = w;
-  };
-  sky::PlanetSpots planets;
-  glm::vec3 shares(0.0f);
-  if (state.scene.output.stars) {
-    planets = sky::planetSpots(state.ephemeris, state.scene.camera.eyeM, pixelRad);
-    const double sunDeg = state.ephemeris.sun.elevationDeg;
-    shares = {sky::starlightShare(sunDeg), sky::milkyWayShare(sunDeg), static_cast<float>(planets.count)};
-  }
-  texel(0, shares, 0.0f);
-  for (int i = 0; i < planets.count; ++i) {
-    const sky::PlanetSpot& spot = planets.spots[static_cast<std::size_t>(i)];
-    texel(2 * i + 1, spot.direction, spot.leastRad);
-    texel(2 * i + 2, spot.illuminance, spot.brighter);
-  }
-  put(planets_, texels, {.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest});
-  program.bind("uPlanets", planets_);
-  program.set("uBeyond", shares != glm::vec3(0.0f) ? 1 : 0);
+bool SkyTextures::isAnythingBeyond(const scene::SkyState& state, float pixelRad) {
+  const Beyond there = beyond(state, pixelRad);
+  return there.stars > 0.0f || there.milkyWay > 0.0f || there.planets.count > 0;
 }
 
-void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
-                            StarsMade made) {
-  if (!program.has("uStars")) return;
-  bindPlanets(program, state, pixelRad);
-  constexpr gpu::TextureOptions kTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
-  const bool out = sky::starlightShare(state.ephemeris.sun.elevationDeg) > 0.0f;
-  if (!state.scene.output.stars || (!out && made == StarsMade::kWhenOut)) {
-    if (noStars_.id() == 0) noStars_ = gpu::Texture2D(Image<float>(1, 1, 4), kTexels);
-    program.bind("uStars", noStars_);  // which holds none
-    program.set("uStarCells", 1);
-    program.bind("uMilkyWay", noStars_);
-    return;
-  }
+void SkyTextures::makeStars(const scene::SkyState& state, float pixelRad) {
+  if (!state.scene.output.stars) return;
   if (milkyWay_.id() == 0)
     milkyWay_ =
         gpu::Texture2D(sky::milkyWay(), {.format = gpu::Format::kRgba32F, .wrapX = gpu::Wrap::kRepeat});
-  program.bind("uMilkyWay", milkyWay_);
   if (starsTime_ != state.scene.time) {
     for (Stars& stars : stars_) stars = {};
     starsTime_ = state.scene.time;
   }
   const int level = sky::starLevel(pixelRad);
   Stars& stars = stars_[static_cast<std::size_t>(level)];
-  if (stars.cells == 0) {
-    const sky::StarCells sorted = sky::starCells(sky::starLights(state.scene.time), level);
-    stars.texture = gpu::Texture2D(sorted.texels, kTexels);
-    stars.cells = sorted.cells;
+  if (stars.cells != 0) return;
+  const sky::StarCells sorted = sky::starCells(sky::starLights(state.scene.time), level);
+  stars.texture = gpu::Texture2D(sorted.texels, kStarTexels);
+  stars.cells = sorted.cells;
+}
+
+void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad) {
+  if (!program.has("uStars")) return;
+  const Beyond there = beyond(state, pixelRad);
+  // What lib/background.glsl finds in uPlanets.
+  Image<float>& texels = planetTexels_;
+  if (texels.data.empty()) texels = Image<float>(2 * sky::kPlanetCount + 1, 1, 4);
+  const auto texel = [&](int i, const glm::vec3& v, float w) {
+    for (int c = 0; c < 3; ++c) texels.at(i, 0, c) = v[c];
+    texels.at(i, 0, 3) = w;
+  };
+  texel(0, {there.stars, there.milkyWay, static_cast<float>(there.planets.count)}, 0.0f);
+  for (int i = 0; i < there.planets.count; ++i) {
+    const sky::PlanetSpot& spot = there.planets.spots[static_cast<std::size_t>(i)];
+    texel(2 * i + 1, spot.direction, spot.leastRad);
+    texel(2 * i + 2, spot.illuminance, spot.brighter);
   }
+  put(planets_, texels, kStarTexels);
+  program.bind("uPlanets", planets_);
+  if (there.stars <= 0.0f && there.milkyWay <= 0.0f) {
+    if (noStars_.id() == 0) noStars_ = gpu::Texture2D(Image<float>(1, 1, 4), kStarTexels);
+    program.bind("uStars", noStars_);  // which holds none
+    program.set("uStarCells", 1);
+    program.bind("uMilkyWay", noStars_);
+    return;
+  }
+  makeStars(state, pixelRad);
+  const Stars& stars = stars_[static_cast<std::size_t>(sky::starLevel(pixelRad))];
+  program.bind("uMilkyWay", milkyWay_);
   program.bind("uStars", stars.texture);
   program.set("uStarCells", stars.cells);
 }

@@ -29,12 +29,13 @@ class SkyTextures {
   void updateLive(scene::SkyState& state);
   // Binds those that the program asks for.
   void bind(const gpu::Program& program) const;
-  // And stars, planets and Milky Way, for pictures with pixels of the given size. Their texture is made when
-  // stars are out, or early, so that no frame at dusk has to wait for it; again for pixels of another level
-  // (sky/star_cells.h), and for another scene time.
-  enum class StarsMade { kWhenOut, kEarly };
-  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
-                 StarsMade made = StarsMade::kWhenOut);
+  // Whether stars, planets or the Milky Way are drawn in pictures with pixels of the given size: by programs
+  // with WELKIN_BEYOND, as they cost a rasteriser on the processor much by day too.
+  static bool isAnythingBeyond(const scene::SkyState& state, float pixelRad);
+  // Binds them, for such programs. Their textures are made then, once for pixels of one level
+  // (sky/star_cells.h) and one scene time; or before, so that no frame at dusk has to wait for them.
+  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad);
+  void makeStars(const scene::SkyState& state, float pixelRad);
 
  private:
   struct KeyName {
@@ -53,7 +54,6 @@ class SkyTextures {
     sky::SkyTablesInProgress tables;
     scene::ClearSkyKeyInProgress light;
   };
-  void bindPlanets(gpu::Program& program, const scene::SkyState& state, float pixelRad);
   void keep(const scene::SkyState& state, KeyName first, KeyName second);
   void make(const scene::SkyState& state, KeyName name, Key& key);
   void start(const scene::SkyState& state, KeyName name, double startedAt);

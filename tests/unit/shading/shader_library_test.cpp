@@ -255,6 +255,10 @@ ShaderDefines definesOfLayers(int count) {
   // Living octaves of each kernel, one and more.
   defines.push_back({"WELKIN_KERNEL", std::to_string(count % 3)});
   defines.push_back({"WELKIN_OCTAVES", std::to_string(std::clamp(count * 3, 1, 8))});
+  // Matter with phase functions of its own, and a sky with stars.
+  if (count % 2 == 1)
+    for (const char* name : {"WELKIN_MIE", "WELKIN_HALOS", "WELKIN_RAIN", "WELKIN_BEYOND"})
+      defines.push_back({name, "1"});
   // Few and many cells of the fluence.
   defines.push_back({"WELKIN_CELLS", std::to_string(std::clamp(count * 5, 1, 16))});
   return defines;
