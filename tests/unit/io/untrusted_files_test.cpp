@@ -29,7 +29,8 @@ class UntrustedFiles : public Scratch {
  protected:
   // True if it was read, false after an IoError that names the file. All else fails the test.
   bool reads(const std::filesystem::path& path, const std::string& bytes) const {
-    // A file written anew over itself goes to the disk at once, on file systems that guard against losing both.
+    // A file written anew over itself goes to the disk at once, on file systems that guard against losing
+    // both.
     std::filesystem::remove(path);
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     try {
