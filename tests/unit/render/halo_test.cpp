@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
 #include "welkin/reference/sky_tracer.h"
@@ -48,12 +49,7 @@ scene::SkyState lookingAside(scene::SkyState state, double asideDeg) {
 }
 
 glm::dvec3 drawn(SkyRenderer& renderer, const scene::SkyState& state) {
-  const Image<float> picture = renderer.draw(state).luminance;
-  glm::dvec3 sum(0.0);
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
-      for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(picture.at(x, y, c)) / (kSide * kSide);
-  return sum;
+  return testing::meanOf(renderer.draw(state).luminance);
 }
 
 glm::dvec3 traced(const scene::SkyState& state, int paths) {
