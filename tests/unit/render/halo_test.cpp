@@ -10,7 +10,10 @@
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
+#include "welkin/gpu/context.h"
 #include "welkin/reference/sky_tracer.h"
+#include "welkin/render/live_sky.h"
+#include "welkin/render/live_volumes.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
@@ -96,6 +99,46 @@ TEST(Halo, IsInIceAlone) {
   const glm::dvec3 near = drawn(renderer, lookingAside(droplets, 20.8)),
                    far = drawn(renderer, lookingAside(droplets, 22.1));
   for (int c = 0; c < 3; ++c) EXPECT_LT(far[c], near[c]);
+}
+
+// In somebody's frame loop as in the still: straight above the sun, red begins 22 degrees from it.
+TEST(Halo, IsInLiveFramesAsInStills) {
+  constexpr int kWidth = 48, kHeight = 32;
+  constexpr double kFov = 12.0, kMiddleDeg = 22.0;
+  scene::Scene s =
+      testing::sized(testing::cloudyScene(kSunDeg, {Genus::kCirrostratus}, 8.0), kWidth, kHeight);
+  s.output.quality = scene::Quality::kMedium;
+  const sky::Body sun = scene::lightsAt(s, 0.0).ephemeris.sun;
+  s = testing::looking(s, sun.azimuthDeg, sun.elevationDeg + kMiddleDeg, kFov);
+  const scene::SkyState state = scene::buildSky(s, 0.0);
+  const Image<float> still = SkyRenderer().draw(state).luminance;
+
+  gpu::Context context{{.debug = true}};
+  context.makeCurrent();
+  const gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
+  const gpu::Framebuffer target{texture};
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const shading::View view = shading::viewOf(state);
+  for (int i = 0; i < 12 * LiveVolumes::kFramesInRound; ++i) sky.draw(view, target);
+  const Image<float> live = target.readPicture(0, 3);
+  EXPECT_LT(testing::relativeDifference(live, still), 0.03);
+  for (const Image<float>& picture : {live, still}) {
+    const auto redOverBlue = [&](int y) {
+      const glm::vec3 row = testing::meanOf(picture, y, y + 1);
+      return static_cast<double>(row.x / row.z);
+    };
+    double most = 0.0, at = 0.0;
+    for (int y = 0; y < kHeight; ++y)
+      if (redOverBlue(y) > most) {
+        most = redOverBlue(y);
+        at = kMiddleDeg -
+             degrees(std::atan(std::tan(radians(0.5 * kFov)) * (2.0 * (y + 0.5) - kHeight) / kWidth));
+      }
+    EXPECT_NEAR(at, 21.8, 0.4);
+    EXPECT_GT(most, 1.03 * redOverBlue(kHeight - 1));
+  }
+  EXPECT_TRUE(context.takeErrors().empty());
 }
 
 }  // namespace
