@@ -329,17 +329,12 @@ int main(int argc, char** argv) {
       }
     }
     evenBehind(phase);
-    std::vector<PhaseRow> rows = rowsOf(phase);
-    const auto [whole, forward] = integralsOf(rows);
     fmt::print("of green light {:.4f} goes straight on\n", straight.y);
-    fmt::print("integrals {:.4f} {:.4f} {:.4f}, mean cosines {:.4f} {:.4f} {:.4f}\n", whole.x, whole.y,
-               whole.z, forward.x / whole.x, forward.y / whole.y, forward.z / whole.z);
-    for (PhaseRow& row : rows) row.phase /= whole;
     writePhaseTable(
         argv[1], "Ice",
         fmt::format("Written by bench/ice_phase.cpp, which says what it is; {:.0f} % of smooth crystals.",
                     100.0 * pristine),
-        rows);
+        rowsOf(phase));
   } catch (const std::exception& e) {
     fmt::print(stderr, "ice_phase: {}\n", e.what());
     return 1;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -43,6 +44,22 @@ glm::dvec3 seenAt(const std::vector<glm::dvec3>& phase, double deg, double width
   return sum / count;
 }
 
+// Of what is linear between rows: the integral over the sphere of the function, and of it times the cosine.
+std::array<glm::dvec3, 2> integralsOf(const std::vector<PhaseRow>& rows) {
+  std::array<glm::dvec3, 2> sums{glm::dvec3(0.0), glm::dvec3(0.0)};
+  constexpr int kSteps = 64;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i)
+    for (int k = 0; k < kSteps; ++k) {
+      const double share = (k + 0.5) / kSteps, step = radians(rows[i + 1].deg - rows[i].deg),
+                   angle = radians(rows[i].deg) + share * step;
+      const glm::dvec3 p = ((1.0 - share) * rows[i].phase + share * rows[i + 1].phase) * (2.0 * kPi) *
+                           std::sin(angle) * (step / kSteps);
+      sums[0] += p;
+      sums[1] += p * std::cos(angle);
+    }
+  return sums;
+}
+
 }  // namespace
 
 // Eyes: C. Wyman, P.-P. Sloan and P. Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color
@@ -73,23 +90,12 @@ void addRows(const std::vector<glm::dvec3>& phase, double fromDeg, double toDeg,
   }
 }
 
-std::array<glm::dvec3, 2> integralsOf(const std::vector<PhaseRow>& rows) {
-  std::array<glm::dvec3, 2> sums{glm::dvec3(0.0), glm::dvec3(0.0)};
-  constexpr int kSteps = 64;
-  for (std::size_t i = 0; i + 1 < rows.size(); ++i)
-    for (int k = 0; k < kSteps; ++k) {
-      const double share = (k + 0.5) / kSteps, step = radians(rows[i + 1].deg - rows[i].deg),
-                   angle = radians(rows[i].deg) + share * step;
-      const glm::dvec3 p = ((1.0 - share) * rows[i].phase + share * rows[i + 1].phase) * (2.0 * kPi) *
-                           std::sin(angle) * (step / kSteps);
-      sums[0] += p;
-      sums[1] += p * std::cos(angle);
-    }
-  return sums;
-}
-
 void writePhaseTable(const char* path, const std::string& matter, const std::string& by,
-                     const std::vector<PhaseRow>& rows) {
+                     std::vector<PhaseRow> rows) {
+  const auto [whole, forward] = integralsOf(rows);
+  fmt::print("integrals {:.4f} {:.4f} {:.4f}, mean cosines {:.4f} {:.4f} {:.4f}\n", whole.x, whole.y, whole.z,
+             forward.x / whole.x, forward.y / whole.y, forward.z / whole.z);
+  for (PhaseRow& row : rows) row.phase /= whole;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path, "w"), std::fclose);
   if (!file)
     throw IoError(fmt::format("{} cannot be written; expected a path in a folder that is there", path));

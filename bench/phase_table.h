@@ -4,7 +4,6 @@
 // colours linear Rec. 709.
 #pragma once
 
-#include <array>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
@@ -28,12 +27,9 @@ struct PhaseRow {
 void addRows(const std::vector<glm::dvec3>& phase, double fromDeg, double toDeg, double stepDeg,
              std::vector<PhaseRow>& rows);
 
-// Of what is linear between rows: the integral over the sphere of the function, and of it times the cosine.
-std::array<glm::dvec3, 2> integralsOf(const std::vector<PhaseRow>& rows);
-
-// Writes the header. matter: "Rain" makes kRainRows; by: what its second line says. Throws
-// IoError.
+// Writes the header, of rows whose integral over the sphere is made 1 in each colour, and prints what it was,
+// and mean cosines. matter: "Rain" makes kRainRows; by: what its second line says. Throws IoError.
 void writePhaseTable(const char* path, const std::string& matter, const std::string& by,
-                     const std::vector<PhaseRow>& rows);
+                     std::vector<PhaseRow> rows);
 
 }  // namespace welkin::bench

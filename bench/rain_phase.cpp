@@ -120,15 +120,10 @@ int main(int argc, char** argv) {
   }
   try {
     const double mmPerH = argc > 2 ? std::atof(argv[2]) : 10.0;
-    std::vector<PhaseRow> rows = rowsOf(withoutDiffraction(sumsOf(mmPerH)));
-    const auto [whole, forward] = integralsOf(rows);
-    fmt::print("integrals {:.4f} {:.4f} {:.4f}, mean cosines {:.4f} {:.4f} {:.4f}\n", whole.x, whole.y,
-               whole.z, forward.x / whole.x, forward.y / whole.y, forward.z / whole.z);
-    for (PhaseRow& row : rows) row.phase /= whole;
     writePhaseTable(
         argv[1], "Rain",
         fmt::format("Written by bench/rain_phase.cpp, which says what it is; drops of {} mm/h.", mmPerH),
-        rows);
+        rowsOf(withoutDiffraction(sumsOf(mmPerH))));
   } catch (const std::exception& e) {
     fmt::print(stderr, "rain_phase: {}\n", e.what());
     return 1;

@@ -7,13 +7,12 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "tests/testing/live_frames.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
 #include "welkin/gpu/context.h"
 #include "welkin/reference/sky_tracer.h"
-#include "welkin/render/live_sky.h"
-#include "welkin/render/live_volumes.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
@@ -115,13 +114,7 @@ TEST(Halo, IsInLiveFramesAsInStills) {
 
   gpu::Context context{{.debug = true}};
   context.makeCurrent();
-  const gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
-  const gpu::Framebuffer target{texture};
-  LiveSky sky;
-  sky.update(s, 0.0);
-  const shading::View view = shading::viewOf(state);
-  for (int i = 0; i < 12 * LiveVolumes::kFramesInRound; ++i) sky.draw(view, target);
-  const Image<float> live = target.readPicture(0, 3);
+  const Image<float> live = testing::settledLiveFrame(s);
   EXPECT_LT(testing::relativeDifference(live, still), 0.03);
   for (const Image<float>& picture : {live, still}) {
     const auto redOverBlue = [&](int y) {

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "tests/testing/live_frames.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
@@ -15,8 +16,6 @@
 #include "welkin/optics/rain_phase.h"
 #include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/sky_tracer.h"
-#include "welkin/render/live_sky.h"
-#include "welkin/render/live_volumes.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
@@ -160,13 +159,7 @@ TEST(Rainbow, IsInLiveFramesAsInStills) {
 
   gpu::Context context{{.debug = true}};
   context.makeCurrent();
-  const gpu::Texture2D texture{kWidth, kHeight, {.format = gpu::Format::kRgba32F}};
-  const gpu::Framebuffer target{texture};
-  LiveSky sky;
-  sky.update(s, 0.0);
-  const shading::View view = shading::viewOf(state);
-  for (int i = 0; i < 12 * LiveVolumes::kFramesInRound; ++i) sky.draw(view, target);
-  const Image<float> live = target.readPicture(0, 3);
+  const Image<float> live = testing::settledLiveFrame(s);
   EXPECT_LT(testing::relativeDifference(live, still), 0.03);
   for (const Image<float>& picture : {live, still}) {
     double most = 0.0, at = 0.0;
