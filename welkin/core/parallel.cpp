@@ -2,6 +2,7 @@
 #include "welkin/core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -17,19 +18,48 @@ namespace {
 std::atomic<int> gThreads{0};
 thread_local bool tInsideLoop = false;
 
-// One call of parallelFor, on its caller's stack.
+// One call of parallelFor, on its caller's stack. Chunks lie in shares, of which each thread begins at its
+// own and goes on with what the others have left: what it wrote in the loop before is still in its own caches
+// when the next one comes by.
 struct Loop {
+  static constexpr std::size_t kMostShares = 64;  // more threads begin together
+  struct alignas(64) Share {
+    std::atomic<std::size_t> next{0};
+    std::size_t end = 0;
+  };
+
   LoopBody body;
-  std::size_t count, grain, chunks;
-  std::atomic<std::size_t> nextChunk{0};
+  std::size_t count, grain, mostHelpers, shares;
+  std::array<Share, kMostShares> share;
 
   // Written under the crew's mutex:
   std::atomic<std::size_t> helpers = 0;
-  std::size_t mostHelpers;
   std::exception_ptr failure{};
   Loop* next = nullptr;  // that waits for helpers
 
-  bool wantsHelp() const { return helpers < mostHelpers && nextChunk.load() < chunks; }
+  Loop(LoopBody of, std::size_t n, std::size_t a, std::size_t chunks, std::size_t threads)
+      : body(of), count(n), grain(a), mostHelpers(threads - 1), shares(std::min(threads, kMostShares)) {
+    for (std::size_t s = 0; s < shares; ++s) {
+      share[s].next = s * chunks / shares;
+      share[s].end = (s + 1) * chunks / shares;
+    }
+  }
+
+  bool wantsHelp() const {
+    bool left = false;
+    for (std::size_t s = 0; s < shares; ++s) left = left || share[s].next.load() < share[s].end;
+    return left && helpers < mostHelpers;
+  }
+  void work(std::size_t first) {
+    for (std::size_t i = 0; i < shares; ++i) {
+      Share& s = share[(first + i) % shares];
+      for (std::size_t c = s.next++; c < s.end; c = s.next++)
+        body(c * grain, std::min(count, (c + 1) * grain));
+    }
+  }
+  void skipTheRest() {
+    for (std::size_t s = 0; s < shares; ++s) share[s].next = share[s].end;
+  }
 };
 
 // Until good() or for as long as it takes to wake a thread that sleeps: where loops follow each other, nobody
@@ -57,7 +87,8 @@ class Crew {
   void run(Loop& loop) {
     {
       std::lock_guard lock(mutex_);
-      while (threads_.size() < loop.mostHelpers) threads_.emplace_back([this] { helpForEver(); });
+      while (threads_.size() < loop.mostHelpers)
+        threads_.emplace_back([this, which = threads_.size()] { helpForEver(which); });
       loop.next = loops_;
       loops_ = &loop;
       ++begun_;
@@ -66,7 +97,7 @@ class Crew {
       work_.notify_one();
     else
       work_.notify_all();
-    workOn(loop);
+    workOn(loop, 0);
     waitAwake([&] { return loop.helpers == 0; });
     std::unique_lock lock(mutex_);
     Loop** place = &loops_;
@@ -76,7 +107,7 @@ class Crew {
   }
 
  private:
-  void helpForEver() {
+  void helpForEver(std::size_t which) {
     std::unique_lock lock(mutex_);
     for (;;) {
       Loop* loop = nullptr;
@@ -87,7 +118,7 @@ class Crew {
       if (!loop) return;
       ++loop->helpers;
       lock.unlock();
-      workOn(*loop);
+      workOn(*loop, 1 + which % loop->mostHelpers);
       lock.lock();
       if (--loop->helpers == 0) done_.notify_all();
       const std::uint64_t begun = begun_;
@@ -97,13 +128,12 @@ class Crew {
     }
   }
 
-  void workOn(Loop& loop) {
+  void workOn(Loop& loop, std::size_t which) {
     tInsideLoop = true;
     try {
-      for (std::size_t c = loop.nextChunk++; c < loop.chunks; c = loop.nextChunk++)
-        loop.body(c * loop.grain, std::min(loop.count, (c + 1) * loop.grain));
+      loop.work(which);
     } catch (...) {
-      loop.nextChunk = loop.chunks;
+      loop.skipTheRest();
       std::lock_guard lock(mutex_);
       if (!loop.failure) loop.failure = std::current_exception();
     }
@@ -139,7 +169,7 @@ void parallelFor(std::size_t count, std::size_t grain, LoopBody body) {
     return;
   }
   static Crew crew;
-  Loop loop{.body = body, .count = count, .grain = grain, .chunks = chunks, .mostHelpers = workers - 1};
+  Loop loop(body, count, grain, chunks, workers);
   crew.run(loop);
   if (loop.failure) std::rethrow_exception(loop.failure);
 }

@@ -33,9 +33,10 @@ class LoopBody {
 };
 
 // Calls body(begin, end) over disjoint chunks that together cover [0, count), from several threads at once.
-// Chunks are `grain` long (the last may be shorter) and handed out in order as threads become free.
-// Returns when all are done. The first exception that a body throws is rethrown here; chunks not yet begun
-// are then skipped. Nested calls run serially in the calling thread.
+// Chunks are `grain` long (the last may be shorter). Each thread begins with a share of them, in order and
+// the same from loop to loop, and then takes what others have left. Returns when all are done. The first
+// exception that a body throws is rethrown here; chunks not yet begun are then skipped. Nested calls run
+// serially in the calling thread.
 void parallelFor(std::size_t count, std::size_t grain, LoopBody body);
 
 }  // namespace welkin

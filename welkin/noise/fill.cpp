@@ -241,7 +241,6 @@ void fillBlock(const FillJob& job, const Block& b, Scratch& scratch) {
       fillValueBlock(job, b, scratch);
       break;
   }
-  if (job.stream) hwy::FlushStream();
 }
 
 #endif  // vectors

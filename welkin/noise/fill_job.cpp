@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a fill works out once, its memory, and the loop over its blocks.
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -582,8 +584,12 @@ void fillGrid(FillJob& job) {
       else
         fillBlock(job, b, *scratch);
     }
+    if (job.stream) hwy::FlushStream();
   };
-  parallelFor(static_cast<std::size_t>(across) * down * deep, 1, std::ref(body));
+  const std::size_t blocks = static_cast<std::size_t>(across) * down * deep;
+  // A thread that has written past the caches waits for its last stores: not after every block.
+  const std::size_t grain = job.stream ? blocks / (8 * static_cast<std::size_t>(threadCount())) : 1;
+  parallelFor(blocks, grain, std::ref(body));
 }
 
 }  // namespace welkin::noise

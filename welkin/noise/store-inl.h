@@ -7,7 +7,6 @@
 #define WELKIN_NOISE_STORE_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <array>

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <latch>
+#include <map>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -71,6 +75,29 @@ TEST_P(Parallel, UsesNoMoreThreadsThanAreSet) {
     --now;
   });
   EXPECT_LE(most, GetParam());
+}
+
+TEST_P(Parallel, ThreadsBeginApartInTheSamePlacesInEveryLoop) {
+  constexpr std::size_t kCount = 60;
+  const int threads = GetParam();
+  std::set<std::size_t> expected;
+  for (int t = 0; t < threads; ++t) expected.insert(t * kCount / threads);
+  for (int loop = 0; loop < 3; ++loop) {
+    std::mutex mutex;
+    std::map<std::thread::id, std::size_t> first;
+    std::latch allThere(threads);
+    parallelFor(kCount, 1, [&](std::size_t begin, std::size_t) {
+      {
+        std::lock_guard lock(mutex);
+        if (!first.try_emplace(std::this_thread::get_id(), begin).second) return;
+      }
+      allThere.arrive_and_wait();
+    });
+    std::set<std::size_t> begun;
+    for (const auto& [thread, begin] : first) begun.insert(begin);
+    EXPECT_EQ(begun, expected);
+    EXPECT_EQ(first[std::this_thread::get_id()], 0u);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 5));
