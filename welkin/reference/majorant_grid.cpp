@@ -51,11 +51,10 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     : bounds_(field), layers_(std::move(layers)), tiles_(static_cast<std::size_t>(kTiles) * kTiles) {
   assert(!layers_.empty());
   std::vector<float> cuts;
-  float thinnest = 1e9f, most = 0.0f;
+  float most = 0.0f;
   for (const int i : layers_) {
     const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
     cuts.insert(cuts.end(), {l.baseM, l.topM});
-    thinnest = std::min(thinnest, l.topM - l.baseM);
     most +=
         bounds_.layer(static_cast<std::size_t>(i), {{-1e9f, -1e9f, l.baseM}, {1e9f, 1e9f, l.topM}}).highest;
   }
@@ -63,12 +62,21 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     steps_[i] = 1.01f * most * std::exp2((static_cast<float>(i) - 255.0f) / kStepsAnOctave);
   steps_[1] = 0.0f;  // of kClear; the least may be 0 or 1
   std::sort(cuts.begin(), cuts.end());
-  const float sliceM = std::clamp(thinnest / kSlicesOfLayer, kThinnestSliceM, kThickestSliceM);
+  // Slices as thin as the thinnest layer around asks for: a thin layer beside a deep one does not cut all of
+  // that.
+  const auto sliceM = [&](float from, float to) {
+    float thinnest = 1e9f;
+    for (const int i : layers_) {
+      const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
+      if (l.baseM < to && l.topM > from) thinnest = std::min(thinnest, l.topM - l.baseM);
+    }
+    return std::clamp(thinnest / kSlicesOfLayer, kThinnestSliceM, kThickestSliceM);
+  };
   edges_.push_back(cuts.front());
   for (std::size_t c = 1; c < cuts.size(); ++c) {
     const float from = edges_.back(), to = cuts[c];
     if (to - from < 0.1f) continue;
-    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / sliceM)));
+    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / sliceM(from, to))));
     for (int i = 1; i <= n; ++i)
       edges_.push_back(i == n ? to : from + (to - from) * static_cast<float>(i) / static_cast<float>(n));
   }

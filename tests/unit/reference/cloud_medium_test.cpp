@@ -109,6 +109,26 @@ TEST(MajorantGrid, BoundsSeveralLayersAtOnce) {
   EXPECT_GT(overcast.tight, 100);  // where only height counts
 }
 
+// A thin layer cuts what is as high as it is into thin boxes, and none of the deep cloud over it.
+TEST(MajorantGrid, BoxesAreAsHighAsTheLayersAround) {
+  const scene::SkyState alone = skyOf({Genus::kCumulonimbus}),
+                        both = skyOf({Genus::kCumulus, Genus::kCumulonimbus});
+  const auto& layers = both.clouds->layers();
+  const float thinTopM = layers[0].topM, deepTopM = layers[1].topM;
+  ASSERT_LT(thinTopM, 0.5f * deepTopM);
+  const auto highest = [](const scene::SkyState& state, float fromM, float toM) {
+    const MajorantGrid grid(*state.clouds, allLayers(*state.clouds));
+    float most = 0.0f;
+    for (float z = fromM + 5.0f; z < toM; z += 10.0f) {
+      const CloudBox box = grid.at({900e3f, 900e3f, z}).box;
+      most = std::max(most, box.high.z - box.low.z);
+    }
+    return most;
+  };
+  EXPECT_LT(highest(both, layers[0].baseM, thinTopM), 60.0f);
+  EXPECT_GT(highest(both, thinTopM, deepTopM), 0.9f * highest(alone, thinTopM, deepTopM));
+}
+
 // Along lines of all kinds the cells that a walk visits follow each other, have the bounds that their places
 // have, and leave out nothing that has cloud.
 TEST(MajorantGrid, WalksFromCellToCell) {
