@@ -14,6 +14,7 @@
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
 #include "lib/fluence.glsl"
+#include "lib/ground_light.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
 #include "lib/sheet_surface.glsl"
@@ -26,6 +27,7 @@
 #include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) { return 1.0; }  // of no ground
+float groundSkylight(vec2 q) { return 1.0; }
 
 #include "lib/background.glsl"
 #include "lib/air_volume.glsl"
@@ -145,6 +147,7 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
   vec3 nearLit, nearThrough, farLit, farThrough, middleLit, middleThrough;
   aerialLit(ray.dir, fromM, nearLit, nearThrough);
   aerialLit(ray.dir, toM, farLit, farThrough);
+  float about = lightAboutAirAt(ray.dir, 0.5 * (fromM + toM));
   float lit = litSegment(ray, fromM, toM), glow = clamp((ray.glowM - fromM) / max(toM - fromM, 1.0), 0.0, 1.0);
   if (state.weight > 0.0) {
     aerialLit(ray.dir, clamp(state.weightedDepth / state.weight, fromM, toM), middleLit, middleThrough);
@@ -153,8 +156,8 @@ AirSlice airSegment(AirRay ray, float fromM, float toM, inout AirColumn column) 
     middleThrough = farThrough;
   }
   column.luminance += cloudsThroughAir(ray.dir, state.luminance, state.weight - bySheets, middleThrough);
-  column.luminance += before * max(airBetween(ray.dir, nearLit, nearThrough, middleLit, middleThrough, lit, glow), 0.0);
-  column.luminance += state.transmittance * max(airBetween(ray.dir, middleLit, middleThrough, farLit, farThrough, lit, glow), 0.0);
+  column.luminance += before * max(airBetween(ray.dir, nearLit, nearThrough, middleLit, middleThrough, lit, glow, about), 0.0);
+  column.luminance += state.transmittance * max(airBetween(ray.dir, middleLit, middleThrough, farLit, farThrough, lit, glow, about), 0.0);
   column.clouds = state.transmittance;
   return AirSlice(min(uScale * column.luminance, kHalfMost), column.clouds * farThrough);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows of volumes in the air: what of it the sun reaches along a ray, from the light volume at some places of chance.
 //
-// Needs lib/phase.glsl, lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl and lib/light_volume.glsl before it, and a uniform sampler3D uLightVolume.
+// Needs lib/phase.glsl, lib/sky_uniforms.glsl, lib/cloud_uniforms.glsl, lib/light_volume.glsl and lib/ground_light.glsl before it, and a uniform sampler3D uLightVolume.
 
 #define WELKIN_AIR_SHADOWS
 
@@ -11,6 +11,7 @@ float airDither = 0.5;            // a pass's, in [0, 1): where in their stretch
 #define WELKIN_AIR_SAMPLES 16
 #endif
 const int kAirSamples = WELKIN_AIR_SAMPLES;
+const float kAirAll = 0.4;        // air that takes as much light as this, or more, has them all; thinner air, whose shadows are fainter, fewer
 
 bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
 
@@ -28,18 +29,19 @@ float litAir(vec3 dir, float distanceM, vec3 through) {
   float absorbed = 1.0 - through.y;
   float perM = -log(max(through.y, 1e-4)) / max(distanceM, 1.0);
   float lit = 0.0;
-  for (int i = 0; i < kAirSamples; ++i) {
-    float share = (float(i) + airDither) / float(kAirSamples);
+  int samples = clamp(int(ceil(absorbed / kAirAll * float(kAirSamples))), kAirSamples / 2, kAirSamples);
+  for (int i = 0; i < samples; ++i) {
+    float share = (float(i) + airDither) / float(samples);
     float t = absorbed > 1e-3 ? -log(max(1.0 - share * absorbed, 1e-4)) / perM : share * distanceM;
     lit += litAirAt(dir, t);
   }
-  return uAirUnderSheets * lit / float(kAirSamples);
+  return uAirUnderSheets * lit / float(samples);
 }
 
 // As aerial(), with these shadows.
 void aerialShaded(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   aerialLit(dir, distanceM, inscatter, through);
-  inscatter = shadedAir(dir, inscatter, through, litAir(dir, distanceM, through));
+  inscatter = shadedAir(dir, inscatter, through, litAir(dir, distanceM, through), lightAboutAir(dir, distanceM));
 }
 
 // Light of clouds as it arrives through air, of what they hide. Haze scatters mostly forward: a part of what it takes from a ray is as if it had
@@ -61,5 +63,5 @@ vec3 shadowsInSky(vec3 dir) {
   float distanceM = sphereCrossings(topM, dir.z).y;
   vec3 lit, through;
   aerialLit(dir, distanceM, lit, through);
-  return lit - shadedAir(dir, lit, through, litAir(dir, distanceM, through));
+  return lit - shadedAir(dir, lit, through, litAir(dir, distanceM, through), lightAboutAir(dir, distanceM));
 }

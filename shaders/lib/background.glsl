@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies behind the clouds: the clear sky with its discs, or the ground.
 //
-// Needs lib/sky_uniforms.glsl before it, and a function of the pass, float groundSunlight(vec2 q): the share of the key
-// light that clouds let through to the ground at q. WELKIN_BEYOND: with stars, planets or Milky Way. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
+// Needs lib/sky_uniforms.glsl before it, and two functions of the pass, float groundSunlight(vec2 q) and float groundSkylight(vec2 q): the shares of
+// the key light that clouds let through to the ground at q, and of the mean light of sky and clouds that it has there. WELKIN_BEYOND: with stars, planets or Milky Way. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
 // the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
 #include "lib/ground.glsl"
@@ -12,10 +12,8 @@
 uniform vec3 uGroundAlbedo;
 uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, clouds included, lux
 uniform float uDiscs;             // 1: draw the discs
-uniform vec3 uSunDirection;
 uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, cd/m2
 uniform float uSunRadius;         // rad
-uniform vec3 uMoonDirection;
 uniform vec3 uMoonLuminance;      // of the fully lit part
 uniform float uMoonRadius;
 #ifdef WELKIN_BEYOND
@@ -104,7 +102,7 @@ vec3 groundLuminance(vec3 dir, float distanceM) {
   vec3 q = cloudPosition(p, uEarthRadiusM);
   vec3 up = normalize(vec3(p.x, p.y, p.z + uEarthRadiusM));
   float incidence = max(dot(up, uKeyDirection), 0.0);
-  vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q))) + uSkyOnGround;
+  vec3 light = keyLightAt(0.0, p) * (incidence * groundSunlight(vec2(q))) + uSkyOnGround * groundSkylight(vec2(q));
   vec3 albedo = groundAlbedoAt(uGroundAlbedo, uPlacement, vec2(q));
   return albedo * light / 3.14159265;
 }
@@ -113,7 +111,7 @@ vec3 groundThroughAir(vec3 dir, float groundM) {
   vec3 inscatter, through;
 #if defined(WELKIN_AIR_SHADOWS_KNOWN)
   aerialLit(dir, groundM, inscatter, through);
-  inscatter = shadedAir(dir, inscatter, through, airShadows.w);
+  inscatter = shadedAir(dir, inscatter, through, airShadows.w, lightAboutAir(dir, groundM));
 #elif defined(WELKIN_AIR_SHADOWS)
   aerialShaded(dir, groundM, inscatter, through);
 #else

@@ -9,7 +9,7 @@
 // height overhead: exact for sky planes; a plane rises off the curved earth and a dome comes down to the ground, but they keep
 // their place.
 // Clouds of metaballs (WELKIN_SPLATS) are one more surface, at their mean distance along the ray.
-// Needs lib/sky_uniforms.glsl and lib/light_around.glsl before it, with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl, with splats lib/splat_layer.glsl.
+// Needs lib/sky_uniforms.glsl, lib/light_around.glsl and lib/ground_light.glsl before it, with sheets lib/sheet_ray.glsl and lib/sheet_shadows.glsl, with splats lib/splat_layer.glsl.
 
 #if defined(WELKIN_SHEETS) || defined(WELKIN_SPLATS)
 #define WELKIN_SURFACES
@@ -51,6 +51,14 @@ WELKIN_FIXED uniform vec4 uBandSky[kMaxLayers];  // for each band: of the light 
 #endif
 
 const int kSurfaceHalvings = 3;   // of the step in which a surface was met
+
+// What is left when a march may end: less where sun or moon shine through, which are many times as bright as clouds.
+#ifdef WELKIN_SEGMENTS
+float opaqueTowards(vec3 dir) { return 0.01; }
+#else
+const float kAboutDisc = 0.99985; // cosine, 1 degree
+float opaqueTowards(vec3 dir) { return max(dot(dir, uSunDirection), dot(dir, uMoonDirection)) > kAboutDisc ? 0.0005 : 0.05; }
+#endif
 
 // The phase functions of the first scattering along a ray, 1/sr.
 struct FirstPhases {
@@ -163,10 +171,10 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
   float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
   return keyLightAt(q.z, p) * (sheets * sun) +
-         lightFromAbove(weights, dir, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * scattered.shares.y;
+         lightFromAbove(weights, dir, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * (groundShareBelow(q) * scattered.shares.y);
 #else
   return keyLightAt(q.z, p) * sun +
-         lightFromAbove(weights, dir, enteredM) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * scattered.shares.y;
+         lightFromAbove(weights, dir, enteredM) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * (groundShareBelow(q) * scattered.shares.y);
 #endif
 }
 
@@ -206,6 +214,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
   int fine = 0;                 // short steps to go before stepping far again
   bool entering = true;         // the next sample in cloud is the first behind a surface
   float skinStep = 1e9;         // steps grow from the surface on, where most of what is seen lies
+  float opaque = opaqueTowards(dir);
   while (state.steps < uMaxSteps && t < stretch.y && state.transmittance > 0.0) {
     vec3 p, q;
     CloudPoint point;
@@ -289,7 +298,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     state.weightedDepth += share * t;
     state.weight += share;
     state.transmittance *= through;
-    if (state.transmittance < 0.01) {
+    if (state.transmittance < opaque) {
       // What is left would look like what was seen.
       state.luminance /= 1.0 - state.transmittance;
 #ifdef WELKIN_SURFACES

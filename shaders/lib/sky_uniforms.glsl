@@ -5,6 +5,8 @@
 
 uniform float uEyeM;              // height of the eye above the ground
 uniform float uEarthRadiusM;      // to the ground
+uniform vec3 uSunDirection;
+uniform vec3 uMoonDirection;
 uniform vec3 uKeyDirection;       // towards the light that lights the clouds, sun or moon
 uniform sampler2D uKeyLight;      // its illuminance through the air, lux, by height and by the sine of its elevation
 uniform float uKeyLightTopM;      // height of the table's end
@@ -53,18 +55,20 @@ vec3 lightTowards(LightMoments light, vec3 dir) {
   return max(vec3(dot(light.red, w), dot(light.green, w), dot(light.blue, w)), 0.2 * mean);
 }
 
-// What it adds between two distances where the sun reaches a share of it: air in the shade of clouds has the light about it alone; in the sun,
-// a share of it (glow) has the light of the clouds too.
-vec3 airBetween(vec3 dir, vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow) {
+// What it adds between two distances where the sun reaches a share of it: air in the shade of clouds has the light about it alone, `about` in that
+// on average; in the sun, a share of it (glow) has the light of the clouds too.
+vec3 airBetween(vec3 dir, vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow, float about) {
   vec3 scattered = nearThrough - farThrough;
-  return mix(scattered * lightTowards(uHaze, dir), farLit - nearLit + scattered * (glow * lightTowards(uCloudGlow, dir)), lit);
+  return mix(about * scattered * lightTowards(uHaze, dir), farLit - nearLit + scattered * (glow * lightTowards(uCloudGlow, dir)), lit);
 }
-vec3 shadedAir(vec3 dir, vec3 inscatter, vec3 through, float lit) { return airBetween(dir, vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0); }
+vec3 shadedAir(vec3 dir, vec3 inscatter, vec3 through, float lit, float about) {
+  return airBetween(dir, vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0, about);
+}
 
 // The same by the mean share.
 void aerial(vec3 dir, float distanceM, out vec3 inscatter, out vec3 through) {
   aerialLit(dir, distanceM, inscatter, through);
-  inscatter = shadedAir(dir, inscatter, through, uClearAir);
+  inscatter = shadedAir(dir, inscatter, through, uClearAir, 1.0);
 }
 
 // Where a ray crosses the sphere at height h: x before, y behind its lowest point; x > y: not at all. Without cancellation.

@@ -29,9 +29,18 @@ layout(location = 0) out vec4 outColor;
 #ifdef WELKIN_VOLUMES
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
+#include "lib/ground_light.glsl"
 #define WELKIN_AIR_SHADOWS_KNOWN
 vec4 airShadows;
 #endif
+
+float groundSkylight(vec2 q) {
+#ifdef WELKIN_VOLUMES
+  return groundSharesAt(q).x;
+#else
+  return 1.0;
+#endif
+}
 
 float groundSunlight(vec2 q) {
   float sun = sheetsSunlight(vec3(q, 0.0));

@@ -6,6 +6,9 @@
 #include "lib/cloud_uniforms.glsl"
 
 uniform sampler2D uAbove;         // the slice above; zero above the highest
+uniform sampler3D uWider;         // the volume with the next wider cascade: a line that leaves this one goes on there
+uniform float uWiderShare;        // half the side of this cascade in that one's; 0: there is none
+uniform float uWiderW;            // texture coordinate of its slice above
 uniform float uHalfM;             // half the side of this cascade
 uniform float uHeightM;           // of this slice
 uniform float uHeightAboveM;      // of the slice above
@@ -29,7 +32,9 @@ void main() {
   float up = 0.5 * rise * (cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.25 * rise), 0.0) +
                            cloudExtinctionInBand(WELKIN_BAND, vec3(q, uHeightM + 0.75 * rise), 0.0));
   vec2 shifted = uv + vec2(uLine) * lengthM / uHalfM * 0.5;
-  vec2 above = vec2(textureLod(uAbove, shifted, 0.0).x, textureLod(uAbove, uv, 0.0).y);
+  vec2 above = vec2(textureLod(uAbove, shifted, 0.0).x, textureLod(uAbove, uv, 0.0).y), beyond = abs(shifted - 0.5);
+  if (max(beyond.x, beyond.y) > 0.5 && uWiderShare > 0.0)
+    above.x = textureLod(uWider, vec3(0.5 + (shifted - 0.5) * uWiderShare, uWiderW), 0.0).x;
   outNext = vec4(above + vec2(line, up), 0.0, 0.0);
   outStored = outNext;
 }

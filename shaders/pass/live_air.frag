@@ -10,6 +10,7 @@
 #include "lib/cloud_light.glsl"
 uniform sampler3D uLightVolume;
 #include "lib/light_volume.glsl"
+#include "lib/ground_light.glsl"
 #include "lib/air_shadows.glsl"
 
 uniform mat3 uEnuFromCamera;      // OpenGL's camera: x right, y up, z backwards
@@ -35,7 +36,7 @@ void main() {
     vec3 inscatter, through;
     aerialLit(there, distanceM, inscatter, through);
     float lit = litAir(there, distanceM, through);
-    if (sky) outAir = vec4(inscatter - shadedAir(there, inscatter, through, lit), outAir.w);
+    if (sky) outAir = vec4(inscatter - shadedAir(there, inscatter, through, lit, lightAboutAir(there, distanceM)), outAir.w);
     else outAir.w = lit;
   }
 }

@@ -12,6 +12,7 @@
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
 #include "lib/fluence.glsl"
+#include "lib/ground_light.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
 #include "lib/sheet_surface.glsl"
@@ -25,6 +26,7 @@
 #include "lib/air_shadows.glsl"
 
 float groundSunlight(vec2 q) { return 1.0; }  // of no ground
+float groundSkylight(vec2 q) { return 1.0; }
 
 #include "lib/background.glsl"
 

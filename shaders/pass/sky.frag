@@ -14,6 +14,7 @@
 #include "lib/cloud_scattering.glsl"
 #include "lib/light_volume.glsl"
 #include "lib/fluence.glsl"
+#include "lib/ground_light.glsl"
 #ifdef WELKIN_SHEETS
 #include "lib/sheet.glsl"
 #include "lib/sheet_surface.glsl"
@@ -28,6 +29,7 @@
 #include "lib/march.glsl"
 #include "lib/air_shadows.glsl"
 
+float groundSkylight(vec2 q) { return groundSharesAt(q).x; }
 float groundSunlight(vec2 q) {
   float sun = exp(-cloudDepthToSun(uLightVolume, vec3(q, 0.0)));
 #ifdef WELKIN_SHEETS

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMostSamples = 6;  // of density along the line between two slices
 // A slice on the way down samples density, on the way up only textures.
 // A step of the fluence is about as much as the latter.
-constexpr float kCostDown = 4.0f, kCostUp = 1.0f, kCostSpread = 1.0f;
+constexpr float kCostDown = 4.0f, kCostUp = 1.0f, kCostSpread = 1.0f, kCostGround = 3.0f;
 
 }  // namespace
 
@@ -28,17 +28,21 @@ int LightVolumePass::sweeps() const {
   return 2 * static_cast<int>(layout_.heightsM.size() * layout_.kHalfM.size());
 }
 
+int LightVolumePass::spreads() const {
+  return spread_ == Spread::kYes ? fluence_.steps() : 0;
+}
+
 int LightVolumePass::steps() const {
-  return sweeps() + (spread_ == Spread::kYes ? fluence_.steps() : 0);
+  return sweeps() + spreads() + ground_.steps();
 }
 
 float LightVolumePass::costOfAll() const {
   return 0.5f * (kCostDown + kCostUp) * static_cast<float>(sweeps()) +
-         kCostSpread * static_cast<float>(steps() - sweeps());
+         kCostSpread * static_cast<float>(spreads()) + kCostGround * static_cast<float>(ground_.steps());
 }
 
 float LightVolumePass::cost(int step) const {
-  if (step >= sweeps()) return kCostSpread;
+  if (step >= sweeps()) return step < sweeps() + spreads() ? kCostSpread : kCostGround;
   const int slices = static_cast<int>(layout_.heightsM.size());
   return step % (2 * slices) < slices ? kCostDown : kCostUp;
 }
@@ -73,6 +77,7 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
   down_.set("uLine", layout.line);
   spread_ = spread;
   if (spread == Spread::kYes) fluence_.begin(layout);
+  ground_.begin(layout);
   step_ = 0;
   credit_ = 0.0f;
   if (steps() == 0) front_ = 1 - front_;  // a clear sky: nothing asks for the volume
@@ -93,15 +98,21 @@ bool LightVolumePass::advance(int parts, const CloudTextures& clouds) {
 void LightVolumePass::step(int step, const CloudTextures& clouds) {
   if (step < sweeps())
     sweepStep(step, clouds);
-  else
+  else if (step < sweeps() + spreads())
     fluence_.step(step - sweeps(), volumes_[1 - front_]);
+  else
+    ground_.step(step - sweeps() - spreads(), volumes_[1 - front_]);
 }
 
 void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {
   const int slices = static_cast<int>(layout_.heightsM.size());
-  const int cascade = step / (2 * slices), inCascade = step % (2 * slices);
+  const int cascades = static_cast<int>(layout_.kHalfM.size()), wide = cascades - 1;
+  const int cascade = wide - step / (2 * slices), inCascade = step % (2 * slices);
   const float halfM = layout_.kHalfM[static_cast<std::size_t>(cascade)];
   const auto layer = [&](int slice) { return cascade * slices + slice; };
+  const auto texelW = [&](int slice) {
+    return (static_cast<float>(slice) + 0.5f) / static_cast<float>(slices * cascades);
+  };
   const auto heightOf = [&](int slice) { return layout_.heightsM[static_cast<std::size_t>(slice)]; };
   if (inCascade % slices == 0) targets_[last_].clear();
   gpu::Framebuffer& target = targets_[1 - last_];
@@ -119,6 +130,10 @@ void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {
     target.attachSlice(1, upward_, layer(k));
     clouds.bind(up);
     up.bind("uAbove", neighbour);
+    up.bind("uWider", volumes_[1 - front_]);
+    up.set("uWiderShare",
+           cascade == wide ? 0.0f : halfM / layout_.kHalfM[static_cast<std::size_t>(cascade) + 1]);
+    up.set("uWiderW", texelW((cascade + 1) * slices + std::min(k + 1, slices - 1)));
     up.set("uHalfM", halfM);
     up.set("uHeightM", height);
     up.set("uHeightAboveM", above);
@@ -127,18 +142,14 @@ void LightVolumePass::sweepStep(int step, const CloudTextures& clouds) {
     return;
   }
   const int k = inCascade - slices, below = std::max(k - 1, 0);
-  const auto texelW = [&](int slice) {
-    return (static_cast<float>(layer(slice)) + 0.5f) /
-           static_cast<float>(slices * static_cast<int>(layout_.kHalfM.size()));
-  };
   target.attachSlice(1, volumes_[1 - front_], layer(k));
   down_.bind("uBelow", neighbour);
   down_.bind("uUpward", upward_);
   down_.set("uHalfM", halfM);
   down_.set("uHeightM", heightOf(k));
   down_.set("uHeightBelowM", heightOf(below));
-  down_.set("uSliceW", texelW(k));
-  down_.set("uSliceBelowW", texelW(below));
+  down_.set("uSliceW", texelW(layer(k)));
+  down_.set("uSliceBelowW", texelW(layer(below)));
   triangle_.draw(down_, target);
 }
 

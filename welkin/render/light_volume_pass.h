@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fills the light volume: optical depths towards and away from the sun, up and down, on slices around the eye
-// (shaders/lib/light_volume.glsl says how it is laid out). Slices are swept from the top down and then from
-// the bottom up, each from its neighbour. Then the fluence by what was swept (lib/fluence.glsl).
+// (shaders/lib/light_volume.glsl says how it is laid out), the widest cascade first. Slices are swept from
+// the top down and then from the bottom up, each from its neighbour. Then, by what was swept, the fluence
+// (lib/fluence.glsl) and the light on the ground (lib/ground_light.glsl).
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "welkin/gpu/texture.h"
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/fluence_pass.h"
+#include "welkin/render/ground_light_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/shading/uniforms.h"
 
@@ -39,9 +41,11 @@ class LightVolumePass {
 
   const gpu::Texture3D& volume() const { return volumes_[front_]; }
   const gpu::Texture3D& fluence() const { return fluence_.fluence(); }
+  const gpu::Texture2D& groundShares() const { return ground_.shares(); }
 
  private:
-  int sweeps() const;  // slices, down and up
+  int sweeps() const;   // slices, down and up
+  int spreads() const;  // steps of the fluence
   int steps() const;
   void step(int step, const CloudTextures& clouds);
   void sweepStep(int step, const CloudTextures& clouds);
@@ -60,6 +64,7 @@ class LightVolumePass {
   std::array<gpu::Texture3D, 2> volumes_;
   std::size_t front_ = 0;
   FluencePass fluence_;
+  GroundLightPass ground_;
   Spread spread_ = Spread::kYes;
   shading::LightVolumeLayout layout_;  // being swept
   int step_ = 0;

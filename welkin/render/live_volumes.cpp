@@ -197,6 +197,7 @@ void LiveVolumes::setLight(gpu::Program& p, const scene::SkyState& state,
   p.set("uLineTowardsSun", light_->towardsSun ? 1.0f : 0.0f);
   p.bind("uLightVolume", lightVolume_.volume());
   p.bind("uFluence", lightVolume_.fluence());
+  p.bind("uGroundShares", lightVolume_.groundShares());
 }
 
 void LiveVolumes::setSheets(gpu::Program& p, const scene::SkyState& state,

@@ -157,6 +157,7 @@ void SkyRenderer::Impl::bind(gpu::Program& p, const scene::SkyState& state) {
   tables.bindStars(p, state, pixelRadOf(state));
   p.bind("uLightVolume", lightVolume.volume());
   p.bind("uFluence", lightVolume.fluence());
+  p.bind("uGroundShares", lightVolume.groundShares());
   sheets.bind(p);
   if (!splats.empty()) splats.bind(p);
   if (box) box->bind(p);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
@@ -37,8 +38,9 @@ constexpr double kDiffuseMu = 2.0 / 3.0;
 // Of broken cloud light leaves downwards through the sides: what it sends back is less by a power of the
 // cover, that grows with how tall clouds are for their width, and with the sun's height. Fitted to the ground
 // under skies of the reference renderer (cumulus of 2 to 6 oktas, stratocumulus of 5 and 7, each under suns
-// of 10 to 60 degrees): the light that reaches it agrees within a tenth.
-constexpr double kLeaks = 4.0, kTallCells = 0.6;
+// of 10 to 60 degrees): the light that reaches it agrees within a tenth. Out of clouds so thick as
+// thunderclouds little comes but on the side where it went in.
+constexpr double kLeaks = 4.0, kTallCells = 0.6, kLeaksUpTo = 16.0;
 
 // What the volumes do with light on its way to the ground, on average over the sky.
 struct CloudShade {
@@ -69,8 +71,10 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     const double cover = weather.layers[i].oktas / kOktas, depth = layer.topM - layer.baseM;
     const double tau = depth * layer.extinction, cells = depth / (layer.cellM / 12.0);  // deep
     const double depthBySimilarity = (1.0 - optics::dropletAsymmetry()) * kMeanDensity * tau;
+    const double thick = depthBySimilarity / kLeaksUpTo,
+                 leaks = kLeaks * std::min(cells, kTallCells) / (1.0 + thick * thick);
     const auto reflected = [&](double mu) {
-      const double among = std::pow(cover, kLeaks * std::min(cells, kTallCells) * std::sqrt(mu));
+      const double among = std::pow(cover, leaks * std::sqrt(mu));
       return among * slabReflectance(depthBySimilarity, mu);
     };
     shade.diffuse *= 1.0 - cover * reflected(kDiffuseMu);
@@ -212,6 +216,9 @@ AmbientLight ambientLight(const SkyState& s) {
     // What falls on the clouds has not yet passed the air beneath their tops.
     onClouds += horizontalIlluminance(atmosphere, light, shade.lightM);
   }
+  a.cover = static_cast<float>(shade.cover);
+  a.cloudsM = static_cast<float>(shade.lightM);
+  a.sunOverSky = luminanceOf(&direct.x) / std::max(luminanceOf(&skyOnGround.x), 1e-9f);
   const auto cover = static_cast<float>(shade.cover);
   const auto taken = static_cast<float>(shade.slantCover), passes = static_cast<float>(shade.passes),
              scatteredDown = static_cast<float>(shade.scatteredDown()),

@@ -34,6 +34,9 @@ struct AmbientLight {
   glm::vec3 skyHigh{0};      // the same at 10 km
   glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
   glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
+  float cover = 0.0f;        // of the sky by volumes, [0, 1]
+  float cloudsM = 0.0f;      // height in which light falls on thick clouds; 0: there are none
+  float sunOverSky = 0.0f;   // illuminance of level ground by sun and moon in that by the sky, both clear
   // What comes from above the horizon at the ground, at 2 km and at 10 km, and from below it at 2 km and at
   // 10 km, air and ground.
   sky::LightMoments above, aboveLow, aboveHigh, below, belowHigh;

@@ -278,6 +278,9 @@ void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout) {
   glm::vec3 line = layout.towardsSun ? d : -d;
   line.z = std::max(line.z, 0.035f);
   layout.line = glm::normalize(line);
+  layout.sunOverSky = state.ambient.sunOverSky;
+  layout.broken = 1.0f - state.ambient.cover * state.ambient.cover;
+  layout.spreadM = std::clamp(0.6f * state.ambient.cloudsM, 800.0f, 5000.0f);
 }
 
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout) {

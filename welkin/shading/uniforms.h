@@ -76,10 +76,13 @@ struct LightVolumeLayout {
   std::vector<float> heightsM;  // of the slices
   glm::vec3 line{0, 0, 1};      // along which depths are summed; z > 0
   bool towardsSun = true;       // or away from it
+  float sunOverSky = 0.0f;      // illuminance of level ground by sun and moon, in that by the clear sky
+  float spreadM = 1000.0f;      // how far light on the ground comes from, about
+  float broken = 1.0f;          // 0: closed clouds, under which there is as much everywhere
 };
 // ballsM: heights between which there are metaballs that are drawn as volumes.
 LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<glm::vec2> ballsM = {});
-// Sets of it what changes with the instant: the line.
+// Sets of it what changes with the instant: the line, and how bright sun and moon are.
 void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout);
 Uniforms lightVolumeUniforms(const LightVolumeLayout& layout);
 

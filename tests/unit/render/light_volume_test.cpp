@@ -120,6 +120,24 @@ TEST(LightVolume, FollowsCumulus) {
   EXPECT_GT(correlation(pairs(s, middle, 3, {0, 0, -1}), 0.05), 0.9);
 }
 
+// Of a tower the shadow is longer than the nearest cascade is wide: the line goes on in the next one.
+TEST(LightVolume, FollowsLinesOutOfTheNearestCascade) {
+  const Swept s(cloudyScene(25.0, {Genus::kCumulonimbus}, 4.0));
+  const glm::vec3 sun = s.state.lights[0].direction;
+  const float h = s.layout.heightsM[0];
+  std::vector<std::pair<double, double>> values;
+  int outside = 0;
+  for (int j = 2; j < s.layout.columns; j += 6)
+    for (int i = 2; i < s.layout.columns; i += 6) {
+      const float x = s.coordinate(i), y = s.coordinate(j);
+      const glm::vec2 top = glm::vec2(x, y) + glm::vec2(sun) * (s.layout.bands.back().topM - h) / sun.z;
+      outside += std::max(std::abs(top.x), std::abs(top.y)) > shading::LightVolumeLayout::kHalfM[0];
+      values.emplace_back(s.texels.at(i, j, 0, 0), s.state.clouds->opticalDepth(s.point(x, y, h), sun, 1e9f));
+    }
+  EXPECT_GT(outside, static_cast<int>(values.size()) / 2);
+  EXPECT_GT(correlation(values, 0.05), 0.8);
+}
+
 // Shadows of cumulus on the ground, as the volume has them and along rays. They are looked up where the ray
 // to the sun meets the lowest base (cloudDepthToSun in lib/light_volume.glsl).
 std::vector<std::pair<double, double>> shadowsOfCumulus(scene::Quality quality) {
