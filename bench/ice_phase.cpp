@@ -289,18 +289,6 @@ void evenBehind(std::vector<glm::dvec3>& phase) {
   std::fill(phase.begin() + static_cast<std::ptrdiff_t>(first), phase.end(), sum / whole);
 }
 
-std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase) {
-  std::vector<PhaseRow> rows;
-  addRows(phase, 0.0, 12.0, 1.0, rows);
-  addRows(phase, 12.0, 20.0, 0.5, rows);
-  addRows(phase, 20.0, 26.0, 0.1, rows);
-  addRows(phase, 26.0, 43.0, 0.5, rows);
-  addRows(phase, 43.0, 50.0, 0.25, rows);
-  addRows(phase, 50.0, 170.0, 2.0, rows);
-  addRows(phase, 170.0, 180.1, 1.0, rows);
-  return rows;
-}
-
 }  // namespace
 }  // namespace welkin::bench
 
@@ -334,7 +322,8 @@ int main(int argc, char** argv) {
         argv[1], "Ice",
         fmt::format("Written by bench/ice_phase.cpp, which says what it is; {:.0f} % of smooth crystals.",
                     100.0 * pristine),
-        rowsOf(phase));
+        rowsOf(phase,
+               {{0.0, 1.0}, {12.0, 0.5}, {20.0, 0.1}, {26.0, 0.5}, {43.0, 0.25}, {50.0, 2.0}, {170.0, 1.0}}));
   } catch (const std::exception& e) {
     fmt::print(stderr, "ice_phase: {}\n", e.what());
     return 1;

@@ -78,16 +78,21 @@ glm::dvec3 colourOf(double wavelengthUm) {
   return rgbFromXyz(xyz) / (std::pow(wavelengthUm, 5.0) * (std::exp(14387.8 / (wavelengthUm * kSunK)) - 1.0));
 }
 
-void addRows(const std::vector<glm::dvec3>& phase, double fromDeg, double toDeg, double stepDeg,
-             std::vector<PhaseRow>& rows) {
-  for (int k = 0; fromDeg + k * stepDeg < toDeg - 1e-6; ++k) {
-    const double deg = fromDeg + k * stepDeg;
-    glm::dvec3 p = seenAt(phase, deg, stepDeg);
-    const double y = luminanceOf(&p.x), least = std::min({p.x, p.y, p.z});
-    if (least < kLeastOfLuminance * y)
-      p = glm::mix(glm::dvec3(y), p, (1.0 - kLeastOfLuminance) * y / (y - least));
-    rows.push_back({deg, p});
+std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase, const std::vector<RowRange>& ranges) {
+  std::vector<PhaseRow> rows;
+  for (std::size_t r = 0; r < ranges.size(); ++r) {
+    const auto [fromDeg, stepDeg] = ranges[r];
+    const double toDeg = r + 1 < ranges.size() ? ranges[r + 1].fromDeg - 1e-6 : 180.0 + 1e-6;
+    for (int k = 0; fromDeg + k * stepDeg < toDeg; ++k) {
+      const double deg = fromDeg + k * stepDeg;
+      glm::dvec3 p = seenAt(phase, deg, stepDeg);
+      const double y = luminanceOf(&p.x), least = std::min({p.x, p.y, p.z});
+      if (least < kLeastOfLuminance * y)
+        p = glm::mix(glm::dvec3(y), p, (1.0 - kLeastOfLuminance) * y / (y - least));
+      rows.push_back({deg, p});
+    }
   }
+  return rows;
 }
 
 void writePhaseTable(const char* path, const std::string& matter, const std::string& by,

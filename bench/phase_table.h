@@ -21,11 +21,14 @@ struct PhaseRow {
   glm::dvec3 phase;  // 1/sr
 };
 
-// Of a phase function at the angles of the sums: rows from an angle to before another, each the mean over the
-// sun's disc and over the angles that the row stands for. A colour that screens have not is moved towards
-// grey of its luminance until they have.
-void addRows(const std::vector<glm::dvec3>& phase, double fromDeg, double toDeg, double stepDeg,
-             std::vector<PhaseRow>& rows);
+// From an angle to before the next range's, the last one to 180.
+struct RowRange {
+  double fromDeg, stepDeg;
+};
+// Of a phase function at the angles of the sums: rows, each the mean over the sun's disc and over the angles
+// that the row stands for. A colour that screens have not is moved towards grey of its luminance until they
+// have.
+std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase, const std::vector<RowRange>& ranges);
 
 // Writes the header, of rows whose integral over the sphere is made 1 in each colour, and prints what it was,
 // and mean cosines. matter: "Rain" makes kRainRows; by: what its second line says. Throws IoError.

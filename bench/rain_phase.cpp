@@ -99,15 +99,6 @@ std::vector<glm::dvec3> withoutDiffraction(const Sums& sums) {
   return phase;
 }
 
-std::vector<PhaseRow> rowsOf(const std::vector<glm::dvec3>& phase) {
-  std::vector<PhaseRow> rows;
-  addRows(phase, 0.0, 120.0, 2.0, rows);
-  addRows(phase, 120.0, 146.0, 0.1, rows);
-  addRows(phase, 146.0, 179.0, 1.0, rows);
-  addRows(phase, 179.0, 180.1, 0.25, rows);
-  return rows;
-}
-
 }  // namespace
 }  // namespace welkin::bench
 
@@ -123,7 +114,7 @@ int main(int argc, char** argv) {
     writePhaseTable(
         argv[1], "Rain",
         fmt::format("Written by bench/rain_phase.cpp, which says what it is; drops of {} mm/h.", mmPerH),
-        rowsOf(withoutDiffraction(sumsOf(mmPerH))));
+        rowsOf(withoutDiffraction(sumsOf(mmPerH)), {{0.0, 2.0}, {120.0, 0.1}, {146.0, 1.0}, {179.0, 0.25}}));
   } catch (const std::exception& e) {
     fmt::print(stderr, "rain_phase: {}\n", e.what());
     return 1;

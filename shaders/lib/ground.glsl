@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The look of the ground. Shared by C++ and GLSL, see welkin/core/glsl.h.
 
+WELKIN_CONST float kGroundSharesHalfM = 48e3f;  // half the side of the square around the eye whose light is known (lib/ground_light.glsl)
+
 // Fields and woods: the albedo wanders by a third about its mean over some hundred metres to kilometres. q: metres east and north
 // along the ground.
 WELKIN_FN vec3 groundAlbedoAt(vec3 albedo, sampler2D placement, vec2 q) {

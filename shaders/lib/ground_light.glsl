@@ -3,9 +3,10 @@
 // average around the eye, smooth over some kilometres, by the light volume's depths (lib/ground_light_sums.glsl). Needs lib/sky_uniforms.glsl, lib/clouds.glsl
 // and lib/light_volume.glsl before it.
 
+#include "lib/ground.glsl"
+
 uniform sampler2D uGroundShares;  // x: of the light of sky and clouds, y: of all
 
-const float kGroundSharesHalfM = 48e3;  // half the side of the square that is known
 const float kGroundSeenM = 8e3;         // from so high up one sees so much of the ground that it is as on average
 const float kAirAboutM = 8e3;           // the middle of what of the air is seen at most
 

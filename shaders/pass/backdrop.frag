@@ -6,6 +6,7 @@
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"
+#include "lib/ground.glsl"
 #include "lib/sheet.glsl"
 #include "lib/sheet_shadows.glsl"
 

@@ -5,10 +5,10 @@
 #include "lib/cloud_layer.glsl"
 #include "lib/cloud_light.glsl"
 #include "lib/light_volume.glsl"
+#include "lib/ground.glsl"
 #include "lib/ground_light_sums.glsl"
 
 uniform sampler3D uLightVolume;
-uniform float uHalfM;             // half the side of the square
 uniform vec2 uSizePx;
 
 const int kReach = 12;            // places to each side,
@@ -25,7 +25,7 @@ vec3 cloudsOver(vec2 q) {
 out vec4 outSums;                 // as lightOf() takes them
 
 void main() {
-  vec2 q = (2.0 * gl_FragCoord.xy / uSizePx - 1.0) * uHalfM;
+  vec2 q = (2.0 * gl_FragCoord.xy / uSizePx - 1.0) * kGroundSharesHalfM;
   vec4 sum = vec4(0.0);
   vec2 weights = vec2(0.0);
   for (int i = -kReach; i <= kReach; ++i) {

@@ -7,7 +7,6 @@ namespace welkin::render {
 namespace {
 
 constexpr int kSide = 128;
-constexpr float kHalfM = 48e3f;  // lib/ground_light.glsl's
 
 const shading::ShaderDefine kFromGround{"WELKIN_BANDS", "1"};
 
@@ -25,8 +24,6 @@ GroundLightPass::GroundLightPass()
       shares_{Drawn(kSide, gpu::Format::kRg16F), Drawn(kSide, gpu::Format::kRg16F)} {
   for (Drawn& s : shares_) s.target.clear(0, glm::vec4(1.0f));
   rowsProgram_.set("uSizePx", glm::vec2(kSide));
-  rowsProgram_.set("uHalfM", kHalfM);
-  columnsProgram_.set("uTexelM", 2.0f * kHalfM / kSide);
 }
 
 void GroundLightPass::begin(const shading::LightVolumeLayout& volume) {

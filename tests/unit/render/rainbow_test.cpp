@@ -12,7 +12,6 @@
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
-#include "welkin/gpu/context.h"
 #include "welkin/optics/rain_phase.h"
 #include "welkin/reference/cloud_phases.h"
 #include "welkin/reference/sky_tracer.h"
@@ -154,13 +153,7 @@ TEST(Rainbow, IsInLiveFramesAsInStills) {
   const sky::Body sun = scene::lightsAt(s, 0.0).ephemeris.sun;
   s = testing::looking(testing::sized(s, kWidth, kHeight), sun.azimuthDeg - 180.0, 42.0 - sun.elevationDeg,
                        kFov);
-  const scene::SkyState state = scene::buildSky(s, 0.0);
-  const Image<float> still = SkyRenderer().draw(state).luminance;
-
-  gpu::Context context{{.debug = true}};
-  context.makeCurrent();
-  const Image<float> live = testing::settledLiveFrame(s);
-  EXPECT_LT(testing::relativeDifference(live, still), 0.03);
+  const auto [live, still] = testing::liveAndStill(s);
   for (const Image<float>& picture : {live, still}) {
     double most = 0.0, at = 0.0;
     for (int y = 0; y < kHeight; ++y) {
@@ -176,7 +169,6 @@ TEST(Rainbow, IsInLiveFramesAsInStills) {
     EXPECT_NEAR(at, 42.0, 0.4);
     EXPECT_GT(most, 1.2);
   }
-  EXPECT_TRUE(context.takeErrors().empty());
 }
 
 TEST(Rainbow, IsNotInSnow) {
