@@ -20,14 +20,17 @@ double evOfWhite(double luminance) {
   return std::log2(luminance / 1.2);
 }
 
-// Linear up to kKnee, then a shoulder that reaches 1 at infinity with continuous slope: clouds keep their
-// modelling up to the sun, and what lies below the knee (the sky) is left as it is.
-constexpr float kSaturation = 1.18f;
-constexpr float kKnee = 0.45f;
-float shoulder(float x) {
-  if (x <= kKnee) return x;
-  const float y = (x - kKnee) / (1.0f - kKnee);
-  return kKnee + (1.0f - kKnee) * (1.0f - std::exp(-y));
+// Steeper than life about the middle, as films and cameras are, so that the sunlit and the shaded side of a
+// cloud, half as bright, stand apart on a screen; then a shoulder that reaches 1 at infinity with continuous
+// slope, so that clouds keep their modelling up to the sun.
+constexpr float kSaturation = 1.15f;
+constexpr float kContrast = 1.3f;
+constexpr float kMiddle = 0.27f;  // what stays as bright as it is: a clear sky beside bright clouds
+constexpr float kKnee = 0.5f;
+float curve(float x) {
+  const float steep = kMiddle * std::pow(x / kMiddle, kContrast);
+  if (steep <= kKnee) return steep;
+  return kKnee + (1.0f - kKnee) * (1.0f - std::exp(-(steep - kKnee) / (1.0f - kKnee)));
 }
 
 // What has no place in a picture becomes black (not a number, below 0) or plain white (without bound).
@@ -112,9 +115,9 @@ Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
         // Half way between a curve on each channel (light things turn white) and one on the brightest (hues
         // stay).
         const float peak = std::max({rgb[0], rgb[1], rgb[2], 1e-9f});
-        const float keep = shoulder(peak) / peak;
+        const float keep = curve(peak) / peak;
         for (int c = 0; c < 3; ++c)
-          o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + shoulder(rgb[c])), 0.0f, 1.0f));
+          o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + curve(rgb[c])), 0.0f, 1.0f));
       }
   });
   return out;

@@ -94,6 +94,17 @@ TEST(Display, SunlitCloudsAreWhite) {
   EXPECT_NEAR(out.data[2], out.data[1], 0.02f);
 }
 
+// A cloud's shaded side has about half the light of its sunlit one: a fifth of the screen's range apart, as in
+// photographs.
+TEST(Display, CloudsHaveASunlitAndAShadedSide) {
+  const double ev = 14.7;
+  const float sunlit = toDisplay(filled(25000, 25000, 25000), ev).data[1];
+  const float shaded = toDisplay(filled(12500, 12500, 12500), ev).data[1];
+  EXPECT_GT(sunlit, 0.9f);
+  EXPECT_LT(sunlit, 0.96f);
+  EXPECT_GT(sunlit - shaded, 0.21f);
+}
+
 TEST(Display, ClearSkiesAreBlue) {
   const Image<float> out = toDisplay(filled(2200, 3300, 5600), 14.7);
   EXPECT_GT(out.data[2], out.data[1] + 0.08f);
