@@ -41,16 +41,25 @@ vec4 lightVolumeTexel(sampler3D volume, vec2 q, float slice, int cascade) {
   return textureLod(volume, vec3(uv, w), 0.0);
 }
 
-// Towards the border of a cascade it is blended with the next.
+// Towards the border of a cascade it is blended with the next; in a pass whose pixels are seen together (WELKIN_CASCADES_DITHERED), by
+// taking one or the other: half the look-ups.
 struct LightCascade {
   int own;
   float next;  // the next one's share
 };
+#ifdef WELKIN_CASCADES_DITHERED
+float cascadeDither = 0.5;  // a pass's, in [0, 1)
+#endif
 
 LightCascade lightCascade(vec2 q) {
   float reach = max(abs(q.x), abs(q.y));
   int own = reach < uCascadeHalfM[0] * 0.96 ? 0 : (reach < uCascadeHalfM[1] * 0.96 ? 1 : 2);
-  return LightCascade(own, own == kCascades - 1 ? 0.0 : max((reach / cascadeHalfM(own) - 0.77) / 0.19, 0.0));
+  float next = own == kCascades - 1 ? 0.0 : max((reach / cascadeHalfM(own) - 0.77) / 0.19, 0.0);
+#ifdef WELKIN_CASCADES_DITHERED
+  return LightCascade(next > cascadeDither ? own + 1 : own, 0.0);
+#else
+  return LightCascade(own, next);
+#endif
 }
 
 vec4 lightVolumeAt(sampler3D volume, vec3 q) {

@@ -12,6 +12,7 @@
 #include "lib/light_around.glsl"
 #include "lib/cloud_light_fit.glsl"
 #include "lib/cloud_scattering.glsl"
+#define WELKIN_CASCADES_DITHERED
 #include "lib/light_volume.glsl"
 #include "lib/fluence.glsl"
 #include "lib/ground_light.glsl"
@@ -61,6 +62,7 @@ void main() {
   vec2 at = floor(px);
   vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
   airDither = dither.x;
+  cascadeDither = fract(interleavedNoise(at + 113.0) + uJitterStep.y);
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
 #ifdef WELKIN_TRANSMITTANCE
