@@ -36,11 +36,25 @@ double slabReflectance(double depth, double mu) {
 constexpr double kMeanDensity = 0.5;  // of a layer's clouds, of their extinction
 constexpr double kDiffuseMu = 2.0 / 3.0;
 // Of broken cloud light leaves downwards through the sides: what it sends back is less by a power of the
-// cover, that grows with how tall clouds are for their width, and with the sun's height. Fitted to the ground
-// under skies of the reference renderer (cumulus of 2 to 6 oktas, stratocumulus of 5 and 7, each under suns
-// of 10 to 60 degrees): the light that reaches it agrees within a tenth. Out of clouds so thick as
-// thunderclouds little comes but on the side where it went in.
-constexpr double kLeaks = 4.0, kTallCells = 0.6, kLeaksUpTo = 16.0;
+// clouds' share of the plane, that grows with how tall they are for their width, and with the sun's height.
+// Fitted to the light of sky and clouds on the ground under skies of the reference renderer (cumulus of 2 to
+// 6 oktas, congestus of 3, stratocumulus of 3 to 7, each under suns of 15 to 66 degrees, four or eight skies
+// each): it agrees within a tenth, RMS. Out of clouds so thick as thunderclouds little comes but on the side
+// where it went in.
+constexpr double kLeaks = 2.0, kTallCells = 0.6, kLeaksUpTo = 16.0;
+
+// How many more cells a ray comes by that rises by the tangent of its zenith angle. cells: how deep a layer
+// is for the distance of its clouds.
+double moreCells(double tangent, double cells) {
+  return std::min(0.5 * tangent * cells, kMoreCells);
+}
+
+// The clouds' share of the plane, overhead. From the ground one sees their sides too: the cover of the sky is
+// more, by the mean of what moreCells() adds over the hemisphere, of which sparse clouds have a little less.
+double shareOverhead(double cover, double cells) {
+  const double half = 0.5 * cells, added = half * std::log(std::max(2.0 * kMoreCells / half, 1.0));
+  return 1.0 - std::pow(1.0 - cover, 1.0 / (1.0 + 0.83 * added));
+}
 
 // What the volumes do with light on its way to the ground, on average over the sky.
 struct CloudShade {
@@ -61,6 +75,7 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
                       double sunHeight) {
   CloudShade shade;
   double clear = 1.0, straight = 1.0, slantwise = 1.0;
+  const double tangent = std::sqrt(1.0 - sunHeight * sunHeight) / std::max(sunHeight, 0.05);
   bool all = true;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     if (isSheet(scene, weather.layers[i])) {
@@ -69,21 +84,21 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     }
     const field::CloudLayer& layer = clouds.layers()[i];
     const double cover = weather.layers[i].oktas / kOktas, depth = layer.topM - layer.baseM;
-    const double tau = depth * layer.extinction, cells = depth / (layer.cellM / 12.0);  // deep
+    const double tau = depth * layer.extinction, cells = depth / (layer.cellM / 12.0);
+    const double overhead = shareOverhead(cover, cells);
     const double depthBySimilarity = (1.0 - optics::dropletAsymmetry()) * kMeanDensity * tau;
     const double thick = depthBySimilarity / kLeaksUpTo,
                  leaks = kLeaks * std::min(cells, kTallCells) / (1.0 + thick * thick);
     const auto reflected = [&](double mu) {
-      const double among = std::pow(cover, leaks * std::sqrt(mu));
+      const double among = std::pow(overhead, leaks * mu);
       return among * slabReflectance(depthBySimilarity, mu);
     };
     shade.diffuse *= 1.0 - cover * reflected(kDiffuseMu);
     clear *= 1.0 - cover;
     // A slanting ray comes by more clouds; a few at most, as gaps are in line.
-    const double slant = std::sqrt(1.0 - sunHeight * sunHeight) / std::max(sunHeight, 0.05);
-    const double more = std::pow(1.0 - cover, std::min(0.5 * slant * cells, kMoreCells));
-    slantwise *= more;
-    shade.passes *= 1.0 - (1.0 - (1.0 - cover) * more) * reflected(std::max(sunHeight, 0.05));
+    const double past = std::pow(1.0 - overhead, 1.0 + moreCells(tangent, cells));
+    slantwise *= past;
+    shade.passes *= 1.0 - (1.0 - past) * reflected(std::max(sunHeight, 0.05));
     straight *= 1.0 - cover * (1.0 - std::exp(-optics::dropletAside() * tau));
     shade.lowM = shade.any ? std::min(shade.lowM, static_cast<double>(layer.baseM)) : layer.baseM;
     shade.highM = std::max(shade.highM, static_cast<double>(layer.topM));
@@ -92,7 +107,7 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     shade.any = true;
   }
   shade.cover = all ? weather.requestedOktas / kOktas : 1.0 - clear;
-  shade.slantCover = 1.0 - (1.0 - shade.cover) * slantwise;
+  shade.slantCover = 1.0 - slantwise;
   shade.aside = (1.0 - straight) / std::max(1.0 - clear, 1e-6);
   return shade;
 }
@@ -253,9 +268,9 @@ AmbientLight ambientLight(const SkyState& s) {
   const sky::LightMoments over =
       clear + hemisphere(sentBack(ground + eyeM), 1.0f) + hemisphere(upward, -1.0f);
   // Clouds send as much down as up from all sides; the rest, of broken ones, goes on downwards much as it
-  // came, and counts half.
+  // came, and counts three quarters.
   const float onwards = std::max(scatteredDown - (1.0f - passes), 0.0f);
-  const float fromAllSides = scatteredDown - 0.5f * onwards;
+  const float fromAllSides = scatteredDown - 0.25f * onwards;
   sky::LightMoments under =
       throughGaps(clear, gaps, 1.0f - taken) + hemisphere(moreThrough / pi, 1.0f) +
       hemisphere(a.ground, -1.0f) +

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
+#include <string>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/units.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/weather/weather.h"
@@ -57,6 +60,50 @@ TEST(AmbientLight, OfTheGroundUnderCloudsIsAsTraced) {
     EXPECT_NEAR(under / clear, g.share, 1.5 * g.error + 0.02)
         << static_cast<int>(g.genus) << " " << g.oktas << " " << g.time;
   }
+}
+
+// What of the light on the ground comes from sky and clouds: 1.7 km of ground from 700 m straight down, of
+// eight seeds (stratocumulus and congestus: four), `--renderer reference` to 8 or 10 %, less the sun's
+// straight light as the marched renderer has it there, in the light of the clear sky.
+TEST(AmbientLight, OfSkyAndCloudsOnTheGroundIsAsTraced) {
+  using enum weather::Genus;
+  struct Traced {
+    weather::Genus genus;
+    double topM, oktas;
+    const char* time;
+    double light;
+  };
+  const Traced traced[] = {{kCumulus, 2200, 2, "11:30", 1.51},       {kCumulus, 2200, 2, "16:30", 1.41},
+                           {kCumulus, 2200, 2, "18:00", 1.10},       {kCumulus, 2200, 4, "11:30", 2.22},
+                           {kCumulus, 2200, 4, "16:30", 1.68},       {kCumulus, 2200, 4, "18:00", 1.07},
+                           {kCumulus, 2200, 6, "11:30", 2.92},       {kCumulus, 2200, 6, "16:30", 1.66},
+                           {kCumulus, 2200, 6, "18:00", 0.96},       {kStratocumulus, 1600, 3, "11:30", 1.87},
+                           {kStratocumulus, 1600, 3, "16:30", 1.58}, {kStratocumulus, 1600, 3, "18:00", 1.15},
+                           {kStratocumulus, 1600, 5, "11:30", 2.64}, {kStratocumulus, 1600, 5, "16:30", 1.75},
+                           {kStratocumulus, 1600, 5, "18:00", 1.05}, {kStratocumulus, 1600, 7, "11:30", 3.35},
+                           {kStratocumulus, 1600, 7, "16:30", 1.67}, {kStratocumulus, 1600, 7, "18:00", 0.83},
+                           {kCumulus, 4000, 3, "11:30", 1.60},       {kCumulus, 4000, 3, "17:00", 1.30}};
+  const auto light = [](const Traced& t, double oktas) {
+    Scene s;
+    s.place.latitudeDeg = 47.46;
+    s.place.longitudeDeg = 8.55;
+    s.time = parseUtcTime("2026-06-21T" + std::string(t.time) + ":00Z");
+    s.technique = Technique::kVolume;
+    if (oktas > 0.0) {
+      weather::Layer layer = weather::typicalLayer(t.genus, 47.46);
+      layer.baseM = 1000.0, layer.topM = t.topM, layer.oktas = oktas;
+      s.layers = {layer};
+    }
+    const glm::vec3 rgb = buildSky(s, 0.0).ambient.skyOnGround;
+    return static_cast<double>(luminanceOf(&rgb.x));
+  };
+  double squares = 0.0;
+  for (const Traced& t : traced) {
+    const double off = light(t, t.oktas) / light(t, 0.0) / t.light - 1.0;
+    EXPECT_NEAR(off, 0.0, 0.25) << static_cast<int>(t.genus) << " " << t.oktas << " " << t.time;
+    squares += off * off;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(std::size(traced))), 0.13);
 }
 
 // Clouds are whiter than the ground: the sky over them is brighter for it, and bluer.
