@@ -78,7 +78,7 @@ std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance) {
 
 std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance) {
   return tilesWhere(sums.width, sums.height, [&](int x0, int y0) {
-    return exceeds(sums, x0, y0, tolerance, 2.0f, [&](int x, int y) {
+    return exceeds(sums, x0, y0, tolerance, 4.0f, [&](int x, int y) {
       // Of three by three pixels, as the resolve takes the dither out.
       float first = 0.0f, second = 0.0f;
       for (int v = std::max(y - 1, y0); v <= std::min({y + 1, y0 + kTilePx - 1, sums.height - 1}); ++v)
