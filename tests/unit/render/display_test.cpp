@@ -94,8 +94,8 @@ TEST(Display, SunlitCloudsAreWhite) {
   EXPECT_NEAR(out.data[2], out.data[1], 0.02f);
 }
 
-// A cloud's shaded side has about half the light of its sunlit one: a fifth of the screen's range apart, as in
-// photographs.
+// A cloud's shaded side has about half the light of its sunlit one: a fifth of the screen's range apart, as
+// in photographs.
 TEST(Display, CloudsHaveASunlitAndAShadedSide) {
   const double ev = 14.7;
   const float sunlit = toDisplay(filled(25000, 25000, 25000), ev).data[1];

@@ -171,8 +171,8 @@ TEST_F(Sky, TheMoonBrightensTheNight) {
 // Opposite to the glow of dusk: clouds have light from all of the sky, and none is much bluer than the bluest
 // of it.
 TEST_F(Sky, CloudsAtDuskAreLittleBluerThanTheSky) {
-  // Of the pixels over the horizon, red for each blue; of all but the least thousandth, which are single holes in
-  // the deepest shade.
+  // Of the pixels over the horizon, red for each blue; of all but the least thousandth, which are single
+  // holes in the deepest shade.
   const auto leastRed = [&](scene::Scene s) {
     const Image<float> picture = drawn(sized(looking(s, 110.0, 14.0, 60.0), 96, 54));
     std::vector<double> red;
