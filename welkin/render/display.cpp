@@ -66,6 +66,9 @@ float nightShare(double exposureEv) {
   return static_cast<float>(0.75 * std::clamp((std::log10(3.0) - std::log10(adaptation)) / 3.0, 0.0, 1.0));
 }
 
+// The least keys of automaticExposureEv().
+constexpr double kMoonlitKey = 0.2, kMoonlessKey = 0.14;
+
 }  // namespace
 
 double automaticExposureEv(const Image<float>& luminance) {
@@ -87,9 +90,11 @@ double automaticExposureEv(const Image<float>& luminance) {
   for (std::size_t i = first; i < values.size(); ++i) logSum += std::log(values[i]);
   const double mean = std::exp(logSum / static_cast<double>(values.size() - first));
   // How bright the mean is to look: G. Krawczyk, K. Myszkowski and H.-P. Seidel 2005, "Perceptual Effects in
-  // Real-time Tone Mapping", eq. 11; dim scenes stay dim. Below the full moon's light no darker than is still
-  // to be read on a screen.
-  const double key = std::max(1.03 - 2.0 / (2.0 + std::log10(mean + 1.0)), 0.15);
+  // Real-time Tone Mapping", eq. 11; dim scenes stay dim. By the full moon's light no darker than is still to
+  // be read on a screen, and without a moon a little darker than that.
+  const double moonless = std::clamp(0.5 * std::log10(0.02 / mean), 0.0, 1.0);
+  const double key =
+      std::max(1.03 - 2.0 / (2.0 + std::log10(mean + 1.0)), std::lerp(kMoonlitKey, kMoonlessKey, moonless));
   const double evMean = evOfWhite(mean / (0.56 * key));
   // Bright clouds must keep their modelling: the brightest twentieth may not pass twice white.
   const double evBright = evOfWhite(values[values.size() * 95 / 100] / (2.4 * key + 0.1));

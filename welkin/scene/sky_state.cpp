@@ -52,7 +52,8 @@ double moreCells(double tangent, double cells) {
 // The clouds' share of the plane, overhead. From the ground one sees their sides too: the cover of the sky is
 // more, by the mean of what moreCells() adds over the hemisphere, of which sparse clouds have a little less.
 double shareOverhead(double cover, double cells) {
-  const double half = 0.5 * cells, added = half * std::log(std::max(2.0 * kMoreCells / half, 1.0));
+  const double half = std::max(0.5 * cells, 1e-6),
+               added = half * std::log(std::max(2.0 * kMoreCells / half, 1.0));
   return 1.0 - std::pow(1.0 - cover, 1.0 / (1.0 + 0.83 * added));
 }
 
