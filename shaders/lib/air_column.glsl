@@ -72,8 +72,7 @@ AirRay airRay(ivec2 column) {
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
   float cosSun = dot(dir, uKeyDirection);
   FirstPhases phases = cloudPhases(dir, cosSun);
-  vec2 at = vec2(column);
-  vec2 dither = vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0));
+  vec2 dither = dithersOf(vec2(column), vec2(0.0)).steps;
   float groundM = groundDistance(dir);
 #ifdef WELKIN_SHEETS
   float endM = groundM, pixelRad = uPixelRad;

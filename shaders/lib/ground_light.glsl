@@ -16,13 +16,12 @@ vec2 groundSharesAt(vec2 q) {
   return mix(shares, vec2(1.0), clamp(5.0 * max(abs(at.x), abs(at.y)) - 4.0, 0.0, 1.0));
 }
 
-// What reaches clouds from below has in it.
-float groundShareBelow(vec3 q) { return mix(groundSharesAt(vec2(q)).y, 1.0, clamp(q.z / kGroundSeenM, 0.0, 1.0)); }
+// The same as seen from q, over the ground.
+vec2 groundSharesFrom(vec3 q) { return mix(groundSharesAt(vec2(q)), vec2(1.0), clamp(q.z / kGroundSeenM, 0.0, 1.0)); }
 
 // The light about the air at a distance along a ray, in that on average: as about the ground there.
 float lightAboutAirAt(vec3 dir, float distanceM) {
-  vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * distanceM, uEarthRadiusM);
-  return mix(groundSharesAt(vec2(q)).x, 1.0, clamp(q.z / kGroundSeenM, 0.0, 1.0));
+  return groundSharesFrom(cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * distanceM, uEarthRadiusM)).x;
 }
 // The same of all of the way there.
 float lightAboutAir(vec3 dir, float distanceM) { return lightAboutAirAt(dir, min(0.5 * distanceM, kAirAboutM)); }

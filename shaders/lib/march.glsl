@@ -167,15 +167,14 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
 #ifdef WELKIN_RAIN
   sun += rain * exp(-depths.toSun) * vec3(phases.rain);
 #endif
+  vec3 above = lightFromAbove(weights, dir, enteredM);
 #ifdef WELKIN_SHEETS
   // Sheets cast shadows where light comes straight; deeper inside it has come from all around.
-  float sheets = mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
-  return keyLightAt(q.z, p) * (sheets * sun) +
-         lightFromAbove(weights, dir, enteredM) * vec3(uBandSky[band]) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * (groundShareBelow(q) * scattered.shares.y);
-#else
-  return keyLightAt(q.z, p) * sun +
-         lightFromAbove(weights, dir, enteredM) * scattered.shares.x + lightFromBelow(weights, dir, q.z) * (groundShareBelow(q) * scattered.shares.y);
+  sun *= mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
+  above *= vec3(uBandSky[band]);
 #endif
+  return keyLightAt(q.z, p) * sun + above * scattered.shares.x +
+         lightFromBelow(weights, dir, q.z) * (groundSharesFrom(q).y * scattered.shares.y);
 }
 
 // What a march carries along a ray.

@@ -47,11 +47,10 @@ void main() {
   vec2 px = uBlock * block + uCellPx;
   vec2 clip = px / uSizePx * 2.0 - 1.0;
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
-  vec2 at = floor(px);
-  vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
-  airDither = dither.x;
-  cascadeDither = fract(interleavedNoise(at + 113.0) + uJitterStep.y);
-  CloudRay ray = marchClouds(dir, groundDistance(dir), uPixelRad, dither);
+  Dithers dithers = dithersOf(floor(px), uJitterStep);
+  airDither = dithers.steps.x;
+  cascadeDither = dithers.cascade;
+  CloudRay ray = marchClouds(dir, groundDistance(dir), uPixelRad, dithers.steps);
   vec3 color = vec3(0.0);
   float depthM = ray.depthM;
 #ifdef WELKIN_SHEETS

@@ -58,13 +58,11 @@ void main() {
     outColor = vec4(0.0, 0.0, 0.0, 1.0);
     return;
   }
-  // Two dithers that know nothing of each other, along the ray and towards the sun: related, they would draw contour lines.
-  vec2 at = floor(px);
-  vec2 dither = fract(vec2(interleavedNoise(at), interleavedNoise(at.yx + 71.0)) + uJitterStep);
-  airDither = dither.x;
-  cascadeDither = fract(interleavedNoise(at + 113.0) + uJitterStep.y);
+  Dithers dithers = dithersOf(floor(px), uJitterStep);
+  airDither = dithers.steps.x;
+  cascadeDither = dithers.cascade;
   float groundM = groundDistance(dir);
-  CloudRay ray = marchClouds(dir, groundM, pixelRad, dither);
+  CloudRay ray = marchClouds(dir, groundM, pixelRad, dithers.steps);
 #ifdef WELKIN_TRANSMITTANCE
   outColor = vec4(vec3(groundM < 1e8 ? 0.0 : ray.transmittance), 1.0);
   return;

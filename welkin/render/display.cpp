@@ -27,7 +27,7 @@ constexpr float kSaturation = 1.15f;
 constexpr float kContrast = 1.3f;
 constexpr float kMiddle = 0.27f;  // what stays as bright as it is: a clear sky beside bright clouds
 constexpr float kKnee = 0.5f;
-float curve(float x) {
+float toneCurve(float x) {
   const float steep = kMiddle * std::pow(x / kMiddle, kContrast);
   if (steep <= kKnee) return steep;
   return kKnee + (1.0f - kKnee) * (1.0f - std::exp(-(steep - kKnee) / (1.0f - kKnee)));
@@ -120,9 +120,9 @@ Image<float> toDisplay(const Image<float>& luminance, double exposureEv) {
         // Half way between a curve on each channel (light things turn white) and one on the brightest (hues
         // stay).
         const float peak = std::max({rgb[0], rgb[1], rgb[2], 1e-9f});
-        const float keep = curve(peak) / peak;
+        const float keep = toneCurve(peak) / peak;
         for (int c = 0; c < 3; ++c)
-          o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + curve(rgb[c])), 0.0f, 1.0f));
+          o[c] = encode(std::clamp(0.5f * (rgb[c] * keep + toneCurve(rgb[c])), 0.0f, 1.0f));
       }
   });
   return out;

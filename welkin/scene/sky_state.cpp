@@ -43,8 +43,8 @@ constexpr double kDiffuseMu = 2.0 / 3.0;
 // where it went in.
 constexpr double kLeaks = 2.0, kTallCells = 0.6, kLeaksUpTo = 16.0;
 
-// How many more cells a ray comes by that rises by the tangent of its zenith angle. cells: how deep a layer
-// is for the distance of its clouds.
+// How many more cells a slanting ray comes by than an upright one. tangent: of its zenith angle; cells: how
+// deep a layer is for the distance of its clouds.
 double moreCells(double tangent, double cells) {
   return std::min(0.5 * tangent * cells, kMoreCells);
 }
@@ -54,7 +54,8 @@ double moreCells(double tangent, double cells) {
 double shareOverhead(double cover, double cells) {
   const double half = std::max(0.5 * cells, 1e-6),
                added = half * std::log(std::max(2.0 * kMoreCells / half, 1.0));
-  return 1.0 - std::pow(1.0 - cover, 1.0 / (1.0 + 0.83 * added));
+  constexpr double kSparse = 0.83;
+  return 1.0 - std::pow(1.0 - cover, 1.0 / (1.0 + kSparse * added));
 }
 
 // What the volumes do with light on its way to the ground, on average over the sky.
@@ -76,7 +77,7 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
                       double sunHeight) {
   CloudShade shade;
   double clear = 1.0, straight = 1.0, slantwise = 1.0;
-  const double tangent = std::sqrt(1.0 - sunHeight * sunHeight) / std::max(sunHeight, 0.05);
+  const double mu = std::max(sunHeight, 0.05), tangent = std::sqrt(1.0 - sunHeight * sunHeight) / mu;
   bool all = true;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
     if (isSheet(scene, weather.layers[i])) {
@@ -90,16 +91,16 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     const double depthBySimilarity = (1.0 - optics::dropletAsymmetry()) * kMeanDensity * tau;
     const double thick = depthBySimilarity / kLeaksUpTo,
                  leaks = kLeaks * std::min(cells, kTallCells) / (1.0 + thick * thick);
-    const auto reflected = [&](double mu) {
-      const double among = std::pow(overhead, leaks * mu);
-      return among * slabReflectance(depthBySimilarity, mu);
+    const auto reflected = [&](double cosine) {
+      const double among = std::pow(overhead, leaks * cosine);
+      return among * slabReflectance(depthBySimilarity, cosine);
     };
     shade.diffuse *= 1.0 - cover * reflected(kDiffuseMu);
     clear *= 1.0 - cover;
     // A slanting ray comes by more clouds; a few at most, as gaps are in line.
     const double past = std::pow(1.0 - overhead, 1.0 + moreCells(tangent, cells));
     slantwise *= past;
-    shade.passes *= 1.0 - (1.0 - past) * reflected(std::max(sunHeight, 0.05));
+    shade.passes *= 1.0 - (1.0 - past) * reflected(mu);
     straight *= 1.0 - cover * (1.0 - std::exp(-optics::dropletAside() * tau));
     shade.lowM = shade.any ? std::min(shade.lowM, static_cast<double>(layer.baseM)) : layer.baseM;
     shade.highM = std::max(shade.highM, static_cast<double>(layer.topM));

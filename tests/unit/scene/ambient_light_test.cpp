@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <string>
 
 #include "welkin/core/colour.h"
@@ -16,19 +17,24 @@ namespace {
 
 constexpr double kNoHazeM = 300e3;
 
-SkyState skyUnder(weather::Genus genus, double oktas, const char* time, double visibilityM = kNoHazeM,
-                  double eyeM = 2.0) {
+Scene sceneUnder(weather::Genus genus, double oktas, const std::string& time) {
   Scene s;
-  s.camera.eyeM = eyeM;
   s.time = parseUtcTime(time);
   s.place.latitudeDeg = 45.0;
-  s.visibilityM = visibilityM;
   s.technique = Technique::kVolume;
   if (oktas > 0.0) {
     weather::Layer layer = weather::typicalLayer(genus, 45.0);
     layer.oktas = oktas;
     s.layers = {layer};
   }
+  return s;
+}
+
+SkyState skyUnder(weather::Genus genus, double oktas, const char* time, double visibilityM = kNoHazeM,
+                  double eyeM = 2.0) {
+  Scene s = sceneUnder(genus, oktas, time);
+  s.camera.eyeM = eyeM;
+  s.visibilityM = visibilityM;
   return buildSky(s, 0.0);
 }
 
@@ -84,22 +90,19 @@ TEST(AmbientLight, OfSkyAndCloudsOnTheGroundIsAsTraced) {
                            {kStratocumulus, 1600, 7, "16:30", 1.67}, {kStratocumulus, 1600, 7, "18:00", 0.83},
                            {kCumulus, 4000, 3, "11:30", 1.60},       {kCumulus, 4000, 3, "17:00", 1.30}};
   const auto light = [](const Traced& t, double oktas) {
-    Scene s;
+    Scene s = sceneUnder(t.genus, oktas, "2026-06-21T" + std::string(t.time) + ":00Z");
     s.place.latitudeDeg = 47.46;
     s.place.longitudeDeg = 8.55;
-    s.time = parseUtcTime("2026-06-21T" + std::string(t.time) + ":00Z");
-    s.technique = Technique::kVolume;
-    if (oktas > 0.0) {
-      weather::Layer layer = weather::typicalLayer(t.genus, 47.46);
-      layer.baseM = 1000.0, layer.topM = t.topM, layer.oktas = oktas;
-      s.layers = {layer};
-    }
+    for (weather::Layer& layer : s.layers) layer.baseM = 1000.0, layer.topM = t.topM;
     const glm::vec3 rgb = buildSky(s, 0.0).ambient.skyOnGround;
     return static_cast<double>(luminanceOf(&rgb.x));
   };
+  std::map<std::string, double> clear;  // by the time
+  for (const Traced& t : traced)
+    if (!clear.contains(t.time)) clear[t.time] = light(t, 0.0);
   double squares = 0.0;
   for (const Traced& t : traced) {
-    const double off = light(t, t.oktas) / light(t, 0.0) / t.light - 1.0;
+    const double off = light(t, t.oktas) / clear[t.time] / t.light - 1.0;
     EXPECT_NEAR(off, 0.0, 0.25) << static_cast<int>(t.genus) << " " << t.oktas << " " << t.time;
     squares += off * off;
   }
