@@ -11,7 +11,6 @@ namespace welkin::render {
 namespace {
 
 constexpr int kTilePx = 16;
-constexpr float kAnywhere = 4.0f;  // times the tolerance, of a single pixel
 constexpr int kResolveRadius = 2;
 
 // How far the luminance at (x, y) is from the line through its neighbours, relative to theirs: zero in flat
@@ -31,9 +30,10 @@ float roughness(const Image<float>& sums, int x, int y) {
   return largest;
 }
 
-// Does any measure of a pixel of the tile exceed kAnywhere times the tolerance, or their mean the tolerance?
+// Does any measure of a pixel of the tile exceed `anywhere` times the tolerance, or their mean the tolerance?
 template <class Measure>
-bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, const Measure& measure) {
+bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, float anywhere,
+             const Measure& measure) {
   const int x1 = std::min(x0 + kTilePx, size.width), y1 = std::min(y0 + kTilePx, size.height);
   float sum = 0.0f, largest = 0.0f;
   for (int y = y0; y < y1; ++y)
@@ -42,7 +42,7 @@ bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, const Me
       sum += m;
       largest = std::max(largest, m);
     }
-  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > kAnywhere * tolerance;
+  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > anywhere * tolerance;
 }
 
 // The tiles for which `wanted(x0, y0)`, merged along rows.
@@ -72,13 +72,13 @@ std::vector<gpu::Tile> tilesWhere(int width, int height, const Wanted& wanted) {
 
 std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance) {
   return tilesWhere(first.width, first.height, [&](int x0, int y0) {
-    return exceeds(first, x0, y0, tolerance, [&](int x, int y) { return roughness(first, x, y); });
+    return exceeds(first, x0, y0, tolerance, 4.0f, [&](int x, int y) { return roughness(first, x, y); });
   });
 }
 
 std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance) {
   return tilesWhere(sums.width, sums.height, [&](int x0, int y0) {
-    return exceeds(sums, x0, y0, tolerance, [&](int x, int y) {
+    return exceeds(sums, x0, y0, tolerance, 2.0f, [&](int x, int y) {
       // Of three by three pixels, as the resolve takes the dither out.
       float first = 0.0f, second = 0.0f;
       for (int v = std::max(y - 1, y0); v <= std::min({y + 1, y0 + kTilePx - 1, sums.height - 1}); ++v)

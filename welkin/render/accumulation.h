@@ -18,9 +18,9 @@ std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance);
 
 // Tiles that twice as many sub-frames have not settled either: where the means of the earlier and of the
 // later half, over three by three pixels (resolve() takes out what is finer), differ from that of both by
-// more than `tolerance` in the mean or four times that anywhere, relative to it; this is the standard error
-// of the mean. before, sums: as `first`, with half of the sub-frames and with all; tiles that have got none
-// in between are settled.
+// more than `tolerance` in the mean or twice that anywhere, relative to it; this is the standard error of the
+// mean. before, sums: as `first`, with half of the sub-frames and with all; tiles that have got none in
+// between are settled.
 std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance);
 
 // The picture from sums of sub-frames: RGB means by the counts in alpha, and the dither that a few sub-frames

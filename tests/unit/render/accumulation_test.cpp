@@ -59,8 +59,8 @@ TEST(UnsettledTiles, AreThoseWhoseHalvesDisagree) {
   EXPECT_EQ(tiles[0].x, 32);
   EXPECT_EQ(tiles[0].width, 16);
   EXPECT_EQ(unsettledTiles(before, sums, 0.005f).front().width, 32);
-  // A single pixel far off is enough.
-  sums.at(20, 5, 1) *= 1.6f;
+  // A single pixel is enough.
+  sums.at(20, 5, 1) *= 1.2f;
   EXPECT_EQ(unsettledTiles(before, sums, 0.012f).front().x, 16);
 }
 
