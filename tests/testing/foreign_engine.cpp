@@ -45,6 +45,8 @@ ForeignEngine::~ForeignEngine() {
     glDisable(name);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
+  glStencilFunc(GL_ALWAYS, 0, ~0u);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   glBlendEquation(GL_FUNC_ADD);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
@@ -71,6 +73,10 @@ void ForeignEngine::restore() const {
   glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
   glColorMask(GL_TRUE, GL_FALSE, GL_TRUE, GL_FALSE);
   glDepthMask(GL_FALSE);
+  glStencilFuncSeparate(GL_FRONT, GL_LESS, 3, 0x0f);
+  glStencilFuncSeparate(GL_BACK, GL_GREATER, 5, 0xf0);
+  glStencilOpSeparate(GL_FRONT, GL_ZERO, GL_INCR, GL_DECR);
+  glStencilOpSeparate(GL_BACK, GL_INVERT, GL_REPLACE, GL_ZERO);
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 12);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
@@ -106,6 +112,18 @@ std::map<std::string, std::string> ForeignEngine::state() const {
   ask("blend equation", GL_BLEND_EQUATION_RGB, 1);
   ask("colour mask", GL_COLOR_WRITEMASK, 4);
   ask("depth mask", GL_DEPTH_WRITEMASK, 1);
+  ask("stencil function", GL_STENCIL_FUNC, 1);
+  ask("stencil reference", GL_STENCIL_REF, 1);
+  ask("stencil mask", GL_STENCIL_VALUE_MASK, 1);
+  ask("stencil fails", GL_STENCIL_FAIL, 1);
+  ask("depth fails", GL_STENCIL_PASS_DEPTH_FAIL, 1);
+  ask("stencil passes", GL_STENCIL_PASS_DEPTH_PASS, 1);
+  ask("stencil function behind", GL_STENCIL_BACK_FUNC, 1);
+  ask("stencil reference behind", GL_STENCIL_BACK_REF, 1);
+  ask("stencil mask behind", GL_STENCIL_BACK_VALUE_MASK, 1);
+  ask("stencil fails behind", GL_STENCIL_BACK_FAIL, 1);
+  ask("depth fails behind", GL_STENCIL_BACK_PASS_DEPTH_FAIL, 1);
+  ask("stencil passes behind", GL_STENCIL_BACK_PASS_DEPTH_PASS, 1);
   ask("polygon mode", GL_POLYGON_MODE, 1);
   ask("unpack alignment", GL_UNPACK_ALIGNMENT, 1);
   ask("unpack row length", GL_UNPACK_ROW_LENGTH, 1);

@@ -15,6 +15,11 @@ DrawState::DrawState(const Program& program, const Target& target, const DrawOpt
     glScissor(target.area.x + options.tile->x, target.area.y + options.tile->y, options.tile->width,
               options.tile->height);
   }
+  if (options.where) {
+    glEnable(GL_STENCIL_TEST);
+    glStencilFunc(GL_EQUAL, *options.where, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  }
   if (options.blend != Blend::kReplace) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
@@ -23,6 +28,7 @@ DrawState::DrawState(const Program& program, const Target& target, const DrawOpt
 }
 
 DrawState::~DrawState() {
+  glDisable(GL_STENCIL_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
 }

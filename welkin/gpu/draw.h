@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 
 #include "welkin/gpu/framebuffer.h"
@@ -34,6 +35,7 @@ enum class Blend {
 struct DrawOptions {
   std::optional<Tile> tile{};  // absent: the whole target
   Blend blend = Blend::kReplace;
+  std::optional<std::uint8_t> where{};  // the pixels whose number this is, see Framebuffer::setMask()
 };
 
 // The state of a draw while it lives. Depth test, culling and all else are as in a fresh context.

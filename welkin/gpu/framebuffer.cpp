@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "welkin/core/error.h"
 #include "welkin/gpu/gl_format.h"
@@ -20,6 +21,7 @@ Framebuffer::Framebuffer(const Texture2D& colour) : Framebuffer() {
 
 Framebuffer::~Framebuffer() {
   if (id_) glDeleteFramebuffers(1, &id_);
+  if (mask_) glDeleteTextures(1, &mask_);
 }
 
 Framebuffer::Framebuffer(Framebuffer&& other) noexcept {
@@ -31,6 +33,7 @@ Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   std::swap(width_, other.width_);
   std::swap(height_, other.height_);
   std::swap(used_, other.used_);
+  std::swap(mask_, other.mask_);
   return *this;
 }
 
@@ -58,6 +61,23 @@ void Framebuffer::attached(int index, int width, int height) {
   for (int i = 0; i < kMaxAttachments; ++i)
     buffers[i] = used_ >> i & 1u ? GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i) : GL_NONE;
   glDrawBuffers(kMaxAttachments, buffers);
+}
+
+void Framebuffer::setMask(const Image<std::uint8_t>& mask) {
+  assert(mask.width == width_ && mask.height == height_ && mask.channels == 1);
+  std::vector<std::uint32_t> texels(mask.data.size());  // depth above, stencil in the lowest eight bits
+  for (int y = 0; y < height_; ++y)
+    std::ranges::copy_n(mask.data.begin() + static_cast<std::ptrdiff_t>(mask.index(0, y)), width_,
+                        texels.begin() + static_cast<std::ptrdiff_t>(mask.index(0, height_ - 1 - y)));
+  if (mask_ == 0) glGenTextures(1, &mask_);
+  glBindTexture(GL_TEXTURE_2D, mask_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH24_STENCIL8, width_, height_, 0, GL_DEPTH_STENCIL,
+               GL_UNSIGNED_INT_24_8, texels.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, id_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, mask_, 0);
 }
 
 void Framebuffer::bindArea(unsigned name, int x, int y, int width, int height) {

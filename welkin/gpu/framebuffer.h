@@ -2,6 +2,7 @@
 // Somewhere to draw to: colour attachments that are textures or slices of a volume, all of one size.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec4.hpp>
 
 #include "welkin/core/image.h"
@@ -30,6 +31,10 @@ class Framebuffer {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  // A number for every pixel, one channel, top row first: draws with DrawOptions::where go where theirs is.
+  // Devices leave out the others before they run the program for them, in groups of a few pixels each way.
+  void setMask(const Image<std::uint8_t>& mask);
+
   // Makes it the target of draws, over its whole size. Throws GpuError if the device cannot draw to it.
   void bind() const;
   // The same for any framebuffer by its GL name (0: the window's) and a part of it.
@@ -47,6 +52,7 @@ class Framebuffer {
   unsigned id_ = 0;
   int width_ = 0, height_ = 0;
   unsigned used_ = 0;  // bit i: attachment i is there
+  unsigned mask_ = 0;  // GL name of the mask's texture
 };
 
 }  // namespace welkin::gpu

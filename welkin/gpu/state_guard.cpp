@@ -51,6 +51,18 @@ StateGuard::StateGuard() {
   unpackAlignment_ = integer(GL_UNPACK_ALIGNMENT);
   unpackRowLength_ = integer(GL_UNPACK_ROW_LENGTH);
   polygonMode_ = integer(GL_POLYGON_MODE);
+  stencil_[0] = {integer(GL_STENCIL_FUNC),
+                 integer(GL_STENCIL_REF),
+                 integer(GL_STENCIL_VALUE_MASK),
+                 integer(GL_STENCIL_FAIL),
+                 integer(GL_STENCIL_PASS_DEPTH_FAIL),
+                 integer(GL_STENCIL_PASS_DEPTH_PASS)};
+  stencil_[1] = {integer(GL_STENCIL_BACK_FUNC),
+                 integer(GL_STENCIL_BACK_REF),
+                 integer(GL_STENCIL_BACK_VALUE_MASK),
+                 integer(GL_STENCIL_BACK_FAIL),
+                 integer(GL_STENCIL_BACK_PASS_DEPTH_FAIL),
+                 integer(GL_STENCIL_BACK_PASS_DEPTH_PASS)};
   glGetBooleanv(GL_COLOR_WRITEMASK, colourMask_);
   glGetBooleanv(GL_DEPTH_WRITEMASK, &depthMask_);
   static_assert(std::size(kSwitches) == sizeof(enabled_));
@@ -100,6 +112,14 @@ StateGuard::~StateGuard() {
   for (std::size_t i = 0; i < std::size(kSwitches); ++i) enable(kSwitches[i], enabled_[i]);
   glColorMask(colourMask_[0], colourMask_[1], colourMask_[2], colourMask_[3]);
   glDepthMask(depthMask_);
+  for (int i = 0; i < 2; ++i) {
+    const GLenum face = i == 0 ? GL_FRONT : GL_BACK;
+    const Stencil& kept = stencil_[i];
+    glStencilFuncSeparate(face, static_cast<GLenum>(kept.function), kept.reference,
+                          static_cast<GLuint>(kept.mask));
+    glStencilOpSeparate(face, static_cast<GLenum>(kept.fail), static_cast<GLenum>(kept.depthFail),
+                        static_cast<GLenum>(kept.pass));
+  }
   glPolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygonMode_));
   glPixelStorei(GL_PACK_ALIGNMENT, packAlignment_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, unpackAlignment_);

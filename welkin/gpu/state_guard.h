@@ -31,6 +31,10 @@ class StateGuard {
   int viewport_[4], scissor_[4];
   int blendSource_[2], blendTarget_[2], blendEquation_[2];  // colour, alpha
   int packAlignment_, unpackAlignment_, unpackRowLength_, activeTexture_, polygonMode_;
+  struct Stencil {
+    int function, reference, mask, fail, depthFail, pass;
+  };
+  Stencil stencil_[2];  // of front and back faces
   unsigned char colourMask_[4], depthMask_;
   bool enabled_[8], seamless_;
   Unit units_[kUnits];

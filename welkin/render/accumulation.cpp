@@ -10,7 +10,7 @@
 namespace welkin::render {
 namespace {
 
-constexpr int kTilePx = 16;
+constexpr int kBlockPx = 4;
 constexpr int kResolveRadius = 2;
 
 // How far the luminance at (x, y) is from the line through its neighbours, relative to theirs: zero in flat
@@ -30,68 +30,54 @@ float roughness(const Image<float>& sums, int x, int y) {
   return largest;
 }
 
-// Does any measure of a pixel of the tile exceed `anywhere` times the tolerance, or their mean the tolerance?
+// Blocks in which the mean of a measure exceeds the tolerance, or the measure `anywhere` times the tolerance.
 template <class Measure>
-bool exceeds(const Image<float>& size, int x0, int y0, float tolerance, float anywhere,
-             const Measure& measure) {
-  const int x1 = std::min(x0 + kTilePx, size.width), y1 = std::min(y0 + kTilePx, size.height);
-  float sum = 0.0f, largest = 0.0f;
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) {
-      const float m = measure(x, y);
-      sum += m;
-      largest = std::max(largest, m);
-    }
-  return sum > tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) || largest > anywhere * tolerance;
-}
-
-// The tiles for which `wanted(x0, y0)`, merged along rows.
-template <class Wanted>
-std::vector<gpu::Tile> tilesWhere(int width, int height, const Wanted& wanted) {
-  const int columns = (width + kTilePx - 1) / kTilePx, rows = (height + kTilePx - 1) / kTilePx;
-  std::vector<char> chosen(static_cast<std::size_t>(columns) * rows);
-  parallelFor(chosen.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      chosen[i] = wanted(static_cast<int>(i) % columns * kTilePx, static_cast<int>(i) / columns * kTilePx);
+Image<std::uint8_t> blocksOver(int width, int height, float tolerance, float anywhere,
+                               const Measure& measure) {
+  Image<std::uint8_t> over(width, height, 1);
+  parallelFor((height + kBlockPx - 1) / kBlockPx, 4, [&](std::size_t begin, std::size_t end) {
+    for (int y0 = static_cast<int>(begin) * kBlockPx; y0 < static_cast<int>(end) * kBlockPx; y0 += kBlockPx)
+      for (int x0 = 0; x0 < width; x0 += kBlockPx) {
+        const int x1 = std::min(x0 + kBlockPx, width), y1 = std::min(y0 + kBlockPx, height);
+        float sum = 0.0f, largest = 0.0f;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) {
+            const float m = measure(x, y);
+            sum += m;
+            largest = std::max(largest, m);
+          }
+        if (sum <= tolerance * static_cast<float>((x1 - x0) * (y1 - y0)) && largest <= anywhere * tolerance)
+          continue;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) over.at(x, y) = 1;
+      }
   });
-
-  std::vector<gpu::Tile> tiles;
-  for (int row = 0; row < rows; ++row) {
-    const int top = row * kTilePx, bottom = std::min(top + kTilePx, height);
-    for (int column = 0; column < columns; ++column) {
-      if (!chosen[static_cast<std::size_t>(row) * columns + column]) continue;
-      const int left = column * kTilePx;
-      while (column + 1 < columns && chosen[static_cast<std::size_t>(row) * columns + column + 1]) ++column;
-      tiles.push_back({left, height - bottom, std::min((column + 1) * kTilePx, width) - left, bottom - top});
-    }
-  }
-  return tiles;
+  return over;
 }
 
 }  // namespace
 
-std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance) {
-  return tilesWhere(first.width, first.height, [&](int x0, int y0) {
-    return exceeds(first, x0, y0, tolerance, 4.0f, [&](int x, int y) { return roughness(first, x, y); });
-  });
+Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance) {
+  return blocksOver(first.width, first.height, tolerance, 4.0f,
+                    [&](int x, int y) { return roughness(first, x, y); });
 }
 
-std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance) {
-  return tilesWhere(sums.width, sums.height, [&](int x0, int y0) {
-    return exceeds(sums, x0, y0, tolerance, 2.0f, [&](int x, int y) {
-      // Of three by three pixels, as the resolve takes the dither out.
-      float first = 0.0f, second = 0.0f;
-      for (int v = std::max(y - 1, y0); v <= std::min({y + 1, y0 + kTilePx - 1, sums.height - 1}); ++v)
-        for (int u = std::max(x - 1, x0); u <= std::min({x + 1, x0 + kTilePx - 1, sums.width - 1}); ++u) {
-          const float* a = &before.data[before.index(u, v)];
-          const float* both = &sums.data[sums.index(u, v)];
-          const float later[3] = {both[0] - a[0], both[1] - a[1], both[2] - a[2]}, count = both[3] - a[3];
-          if (count <= 0.0f) return 0.0f;
-          first += luminanceOf(a) / a[3];
-          second += luminanceOf(later) / count;
+Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<float>& sums, float tolerance) {
+  return blocksOver(sums.width, sums.height, tolerance, 2.0f, [&](int x, int y) {
+    float first = 0.0f, second = 0.0f;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, sums.height - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, sums.width - 1); ++u) {
+        const float* a = &before.data[before.index(u, v)];
+        const float* both = &sums.data[sums.index(u, v)];
+        const float later[3] = {both[0] - a[0], both[1] - a[1], both[2] - a[2]}, count = both[3] - a[3];
+        if (count <= 0.0f) {
+          if (u == x && v == y) return 0.0f;
+          continue;
         }
-      return std::abs(second - first) / std::max(first + second, 1e-12f);
-    });
+        first += luminanceOf(a) / a[3];
+        second += luminanceOf(later) / count;
+      }
+    return std::abs(second - first) / std::max(first + second, 1e-12f);
   });
 }
 

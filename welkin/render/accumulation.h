@@ -2,26 +2,25 @@
 // Which parts of a still need more than one sub-frame, and the picture from their sums.
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
 #include "welkin/core/image.h"
-#include "welkin/gpu/draw.h"
 
 namespace welkin::render {
 
-// Tiles (merged along rows) that one sub-frame does not settle: where luminance leaves the line between its
-// neighbours by more than `tolerance` in the mean or four times that anywhere, relative to itself. Edges,
-// fine forms and dither are rough; clear sky, haze and the inside of an overcast are not, whatever their
-// gradient. `first`: the first sub-frame, RGBA with its weight in alpha, top row first. The tiles count from
-// the bottom, as draws do.
-std::vector<gpu::Tile> roughTiles(const Image<float>& first, float tolerance);
+// Pixels of the blocks, four by four, that one sub-frame does not settle: 1, the others 0, one channel, top
+// row first. There luminance leaves the line between its neighbours by more than `tolerance` in the mean or
+// four times that anywhere, relative to itself. Edges, fine forms and dither are rough; clear sky, haze and
+// the inside of an overcast are not, whatever their gradient. `first`: the first sub-frame, RGBA with its
+// weight in alpha, top row first.
+Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance);
 
-// Tiles that twice as many sub-frames have not settled either: where the means of the earlier and of the
-// later half, over three by three pixels (resolve() takes out what is finer), differ from that of both by
-// more than `tolerance` in the mean or twice that anywhere, relative to it; this is the standard error of the
-// mean. before, sums: as `first`, with half of the sub-frames and with all; tiles that have got none in
-// between are settled.
-std::vector<gpu::Tile> unsettledTiles(const Image<float>& before, const Image<float>& sums, float tolerance);
+// The same of the blocks that twice as many sub-frames have not settled either: where the means of the
+// earlier and of the later half, over three by three pixels (resolve() takes out what is finer), differ from
+// that of both by more than `tolerance` in the mean or twice that anywhere, relative to it; this is the
+// standard error of the mean. before, sums: as `first`, with half of the sub-frames and with all; pixels that
+// have got none in between are settled.
+Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<float>& sums, float tolerance);
 
 // The picture from sums of sub-frames: RGB means by the counts in alpha, and the dither that a few sub-frames
 // leave taken out. The dither is such that any three by three pixels hold all its values, so the mean over

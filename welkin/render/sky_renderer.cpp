@@ -39,8 +39,16 @@ glm::vec2 quasiRandom2(int i) {
   auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * i, 1.0)); };
   return {part(0.7548776662466927), part(0.5698402909980532)};
 }
-float quasiRandom1(int i) {
-  return static_cast<float>(std::fmod(0.5 + 0.6180339887498949 * i, 1.0));
+
+// Point i of Sobol's sequence: two, four and so on of them are equidistant each way.
+glm::vec2 sobol2(unsigned i) {
+  std::uint32_t x = 0, y = 0;
+  for (std::uint32_t halves = 1u << 31, second = halves; i != 0; i >>= 1, halves >>= 1, second ^= second >> 1)
+    if (i & 1u) {
+      x ^= halves;
+      y ^= second;
+    }
+  return glm::vec2(x >> 8, y >> 8) * 0x1p-24f;
 }
 
 // The whole picture in strips, a few to a sub-frame.
@@ -193,25 +201,30 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
 
   if (sum.width() != width || sum.height() != height)
     sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
-  const gpu::Framebuffer target(sum);
+  gpu::Framebuffer target(sum);
   target.clear();
   // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
   // be rough; whenever their number has doubled, what they agree on is done.
   Image<float> before;
-  std::vector<gpu::Tile> tiles = rowBands(width, height);
+  const std::vector<gpu::Tile> rows = rowBands(width, height);
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
-    p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
-    for (std::size_t t = 0; t < tiles.size(); ++t) {
-      triangle.draw(p, target, {.tile = tiles[t], .blend = gpu::Blend::kAdd});
-      if (!progress || (tiles.size() > 16 && t % 16 != 15 && t + 1 < tiles.size())) continue;
+    p.set("uJitterStep", sobol2(i));
+    std::optional<std::uint8_t> where;
+    if (i > 0) where = 1;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = where});
+      if (!progress) continue;
       gpu::finish();  // so that progress is true and Ctrl-C is heard
-      progress((i + static_cast<double>(t + 1) / static_cast<double>(tiles.size())) / settings.subframes);
+      progress((i + static_cast<double>(r + 1) / static_cast<double>(rows.size())) / settings.subframes);
     }
     const bool doubled = std::has_single_bit(static_cast<unsigned>(i + 1));
-    if (!doubled || i + 1 == settings.subframes || tiles.empty()) continue;
+    if (!doubled || i + 1 == settings.subframes) continue;
     Image<float> now = target.readPicture();
-    tiles = i == 0 ? roughTiles(now, settings.tolerance) : unsettledTiles(before, now, settings.tolerance);
+    const Image<std::uint8_t> wanted =
+        i == 0 ? roughBlocks(now, settings.tolerance) : unsettledBlocks(before, now, settings.tolerance);
+    if (std::ranges::count(wanted.data, 0) == std::ssize(wanted.data)) break;
+    target.setMask(wanted);
     before = std::move(now);
   }
   if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
@@ -248,7 +261,7 @@ float SkyRenderer::Impl::sunArriving(const scene::SkyState& state, const shading
   target.clear();
   for (int i = 0; i < kSubframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
-    p.set("uJitterStep", glm::vec2(quasiRandom1(i), quasiRandom2(i + 7).x));
+    p.set("uJitterStep", sobol2(i));
     triangle.draw(p, target, {.blend = gpu::Blend::kAdd});
   }
   const Image<float> shares = target.readPicture();

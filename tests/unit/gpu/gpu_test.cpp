@@ -221,6 +221,32 @@ TEST_F(Gpu, BlendingAccumulatesInsideTheTileOnly) {
   EXPECT_EQ(target.readPicture().at(5, 0, 0), 1.0f);
 }
 
+TEST_F(Gpu, WhereAMaskSaysSoAlone) {
+  const Texture2D texture(9, 5, {.format = Format::kRgba32F});
+  Framebuffer target(texture);
+  target.clear();
+  const FullscreenTriangle triangle;
+  const Program program = fragmentProgram("void main() { oColour = vec4(1.0); }");
+  Image<std::uint8_t> mask(9, 5, 1);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 9; ++x) mask.at(x, y) = static_cast<std::uint8_t>((3 * x + 5 * y) % 4);
+  target.setMask(mask);
+  for (const std::uint8_t where : {1, 3, 3})
+    triangle.draw(program, target, {.blend = Blend::kAdd, .where = where});
+  for (auto& number : mask.data) number = number == 1 ? 255 : 1;
+  target.setMask(mask);  // anew
+  triangle.draw(program, target, {.tile = Tile{0, 0, 9, 2}, .blend = Blend::kAdd, .where = 255});
+  const Image<float> picture = target.readPicture();
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 9; ++x) {
+      const int number = (3 * x + 5 * y) % 4;
+      const float expected = number == 3 ? 2.0f : number == 1 ? (y < 3 ? 1.0f : 2.0f) : 0.0f;
+      EXPECT_EQ(picture.at(x, y), expected) << x << ", " << y;
+    }
+  triangle.draw(program, target);  // the mask does not stay on
+  EXPECT_EQ(target.readPicture().at(0, 0), 1.0f);
+}
+
 TEST_F(Gpu, UniformsOfAllKinds) {
   Program program = fragmentProgram(R"(struct Layer { float base; vec4 wind; };
 uniform Layer uLayers[2]; uniform vec4 uList[3]; uniform float uFloats[2]; uniform mat3 uTurn; uniform mat4 uMove;

@@ -84,7 +84,7 @@ TEST_F(MeshTest, AnEmptyMeshDrawsNothing) {
 
 TEST_F(MeshTest, AnEnginesStateComesBack) {
   const Texture2D texture(4, 4, {.format = Format::kRgba32F});
-  const Framebuffer ours(texture);
+  Framebuffer ours(texture);
   const Program program = flatProgram();
   const Mesh mesh = leftHalf();
   const testing::ForeignEngine engine;
@@ -94,6 +94,8 @@ TEST_F(MeshTest, AnEnginesStateComesBack) {
     mesh.draw(program, ours, {.tile = Tile{0, 0, 2, 2}, .blend = Blend::kOver});
     Texture2D uploaded(3, 3, {});
     uploaded.upload(Image<float>(3, 3, 3));
+    ours.setMask(Image<std::uint8_t>(4, 4, 1));
+    mesh.draw(program, ours, {.where = 2});
     // Drawn as in a fresh context, whatever the engine had.
     ours.clear();
     mesh.draw(program, ours);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 namespace welkin::render {
@@ -18,33 +19,36 @@ Image<float> grey(int width, int height, const std::function<float(int x, int y)
   return image;
 }
 
-TEST(RoughTiles, FlatAreasAndGradientsAreSettled) {
-  EXPECT_TRUE(roughTiles(grey(100, 70, [](int, int) { return 3.0f; }), 0.01f).empty());
-  EXPECT_TRUE(
-      roughTiles(grey(100, 70, [](int x, int y) { return 10.0f + 0.5f * x + 0.25f * y; }), 0.01f).empty());
-  EXPECT_TRUE(roughTiles(grey(1, 1, [](int, int) { return 1.0f; }), 0.01f).empty());
+int count(const Image<std::uint8_t>& blocks) {
+  return static_cast<int>(std::ranges::count(blocks.data, 1));
 }
 
-// Tiles are 16 pixels; they count from the bottom, and neighbours in a row are one.
-TEST(RoughTiles, AnEdgeMarksItsTilesAlone) {
-  const auto tiles = roughTiles(
-      grey(128, 96, [](int x, int y) { return x >= 40 && x < 80 && y < 10 ? 2.0f : 1.0f; }), 0.01f);
-  ASSERT_EQ(tiles.size(), 1u);
-  EXPECT_EQ(tiles[0].x, 32);
-  EXPECT_EQ(tiles[0].width, 64);
-  EXPECT_EQ(tiles[0].y, 80);
-  EXPECT_EQ(tiles[0].height, 16);
+TEST(RoughBlocks, FlatAreasAndGradientsAreSettled) {
+  EXPECT_EQ(count(roughBlocks(grey(100, 70, [](int, int) { return 3.0f; }), 0.01f)), 0);
+  EXPECT_EQ(
+      count(roughBlocks(grey(100, 70, [](int x, int y) { return 10.0f + 0.5f * x + 0.25f * y; }), 0.01f)), 0);
+  EXPECT_EQ(count(roughBlocks(grey(1, 1, [](int, int) { return 1.0f; }), 0.01f)), 0);
 }
 
-TEST(RoughTiles, GrainIsRough) {
-  const auto tiles =
-      roughTiles(grey(64, 64, [](int x, int y) { return (x * 7 + y * 3) % 5 ? 1.0f : 1.1f; }), 0.01f);
-  ASSERT_EQ(tiles.size(), 4u);
-  EXPECT_EQ(tiles[0].width, 64);
+// Blocks are four pixels; those at the border may be cut.
+TEST(RoughBlocks, AnEdgeMarksItsBlocksAlone) {
+  const auto rough =
+      roughBlocks(grey(90, 30, [](int x, int y) { return x >= 41 && y < 10 ? 2.0f : 1.0f; }), 0.01f);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 90; ++x) {
+      const bool side = x >= 40 && x < 44 && y < 12, bottom = x >= 40 && y >= 8 && y < 12;
+      EXPECT_EQ(rough.at(x, y), side || bottom ? 1 : 0) << x << ", " << y;
+    }
+}
+
+TEST(RoughBlocks, GrainIsRough) {
+  EXPECT_EQ(
+      count(roughBlocks(grey(64, 64, [](int x, int y) { return (x * 7 + y * 3) % 5 ? 1.0f : 1.1f; }), 0.01f)),
+      64 * 64);
 }
 
 // Later sub-frames go on where the halves disagree alone, and not where there have been none.
-TEST(UnsettledTiles, AreThoseWhoseHalvesDisagree) {
+TEST(UnsettledBlocks, AreThoseWhoseHalvesDisagree) {
   const Image<float> before = grey(64, 16, [](int x, int) { return x % 2 ? 1.0f : 3.0f; });
   Image<float> sums = before;
   for (int y = 0; y < 16; ++y)
@@ -54,14 +58,16 @@ TEST(UnsettledTiles, AreThoseWhoseHalvesDisagree) {
       sums.at(x, y, 3) += 1.0f;
     }
   // Five percent between two are two and a half of their mean.
-  const auto tiles = unsettledTiles(before, sums, 0.012f);
-  ASSERT_EQ(tiles.size(), 1u);
-  EXPECT_EQ(tiles[0].x, 32);
-  EXPECT_EQ(tiles[0].width, 16);
-  EXPECT_EQ(unsettledTiles(before, sums, 0.005f).front().width, 32);
+  const auto blocks = unsettledBlocks(before, sums, 0.012f);
+  EXPECT_EQ(count(blocks), 16 * 16);
+  EXPECT_EQ(blocks.at(32, 0), 1);
+  EXPECT_EQ(blocks.at(47, 15), 1);
+  EXPECT_EQ(count(unsettledBlocks(before, sums, 0.005f)), 36 * 16);  // and the blocks beside five percent
   // A single pixel is enough.
   sums.at(20, 5, 1) *= 1.2f;
-  EXPECT_EQ(unsettledTiles(before, sums, 0.012f).front().x, 16);
+  const auto more = unsettledBlocks(before, sums, 0.012f);
+  EXPECT_EQ(count(more), 16 * 16 + 4 * 4);
+  EXPECT_EQ(more.at(20, 5), 1);
 }
 
 // Means by the counts in alpha; the dither within a surface goes, an edge stays.
