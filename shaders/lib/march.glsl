@@ -202,12 +202,6 @@ void meetSplats(float distanceM, inout MarchState state) {
 }
 #endif
 
-// How many short steps it is from `from` to t, up to a constant: they are of one length near the eye and in layers that ask for it, and a
-// share of the distance elsewhere.
-float shortStepsTo(float t, float from, float shortStep) {
-  return shortStep > 1.001 * uStepShare * t ? (t - from) / shortStep : log(max(t, 1.0)) / log(1.0 + uStepShare);
-}
-
 // Two loops, one in the other: the inner one finds the next sample in cloud, the outer one lights it. Pixels that are drawn together
 // then light together, however far apart their clouds are. Behind a surface, which is sought by halving, steps grow from half a mean
 // free path on: most of what is seen lies there, and the light changes fastest.
@@ -252,7 +246,9 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
         // under the surface whatever place they began at, and would draw lines of equal depth on it.) The places are those that short
         // steps all the way would come to, so that sub-frames whose dithers lie evenly sample the cloud evenly.
         fine = 2 + int((t - lastClear) / shortStep);
-        t = lastClear + shortStep * fract(dither.x - shortStepsTo(lastClear, stretch.x, shortStep));
+        bool evenSteps = shortStep > 1.001 * uStepShare * t;  // or they grow with the distance
+        float steps = evenSteps ? (lastClear - stretch.x) / shortStep : log(max(lastClear, 1.0)) / log(1.0 + uStepShare);
+        t = lastClear + shortStep * fract(dither.x - steps);
         entering = true;
       } else {
         hit = true;
