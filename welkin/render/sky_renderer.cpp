@@ -203,6 +203,10 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
     sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
   gpu::Framebuffer target(sum);
   target.clear();
+  // The first sub-frame has a mask, too: software rasterisers compile a program anew for draws without one.
+  Image<std::uint8_t> everywhere(width, height, 1);
+  std::ranges::fill(everywhere.data, 1);
+  target.setMask(everywhere);
   // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
   // be rough; whenever their number has doubled, what they agree on is done.
   Image<float> before;
@@ -210,10 +214,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   for (int i = 0; i < settings.subframes; ++i) {
     p.set("uJitterPx", quasiRandom2(i) - 0.5f);
     p.set("uJitterStep", sobol2(i));
-    std::optional<std::uint8_t> where;
-    if (i > 0) where = 1;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = where});
+      triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = 1});
       if (!progress) continue;
       gpu::finish();  // so that progress is true and Ctrl-C is heard
       progress((i + static_cast<double>(r + 1) / static_cast<double>(rows.size())) / settings.subframes);
