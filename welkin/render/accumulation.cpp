@@ -63,19 +63,25 @@ Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance) {
 }
 
 Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<float>& sums, float tolerance) {
-  return blocksOver(sums.width, sums.height, tolerance, 2.0f, [&](int x, int y) {
+  // Mean luminance of both halves; pixels that have got none in between count as agreeing.
+  const int width = sums.width, height = sums.height;
+  Image<float> halves(width, height, 2);
+  parallelFor(static_cast<std::size_t>(width) * height, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float *a = &before.data[4 * i], *both = &sums.data[4 * i];
+      const float later[3] = {both[0] - a[0], both[1] - a[1], both[2] - a[2]}, count = both[3] - a[3];
+      const float first = luminanceOf(a) / a[3];
+      halves.data[2 * i] = first;
+      halves.data[2 * i + 1] = count > 0.0f ? luminanceOf(later) / count : first;
+    }
+  });
+  return blocksOver(width, height, tolerance, 2.0f, [&](int x, int y) {
+    if (sums.at(x, y, 3) == before.at(x, y, 3)) return 0.0f;
     float first = 0.0f, second = 0.0f;
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, sums.height - 1); ++v)
-      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, sums.width - 1); ++u) {
-        const float* a = &before.data[before.index(u, v)];
-        const float* both = &sums.data[sums.index(u, v)];
-        const float later[3] = {both[0] - a[0], both[1] - a[1], both[2] - a[2]}, count = both[3] - a[3];
-        if (count <= 0.0f) {
-          if (u == x && v == y) return 0.0f;
-          continue;
-        }
-        first += luminanceOf(a) / a[3];
-        second += luminanceOf(later) / count;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
+      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+        first += halves.at(u, v, 0);
+        second += halves.at(u, v, 1);
       }
     return std::abs(second - first) / std::max(first + second, 1e-12f);
   });

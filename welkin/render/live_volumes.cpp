@@ -6,6 +6,7 @@
 #include <string>
 
 #include "welkin/field/cloud_field.h"
+#include "welkin/render/jitter.h"
 #include "welkin/render/programs.h"
 #include "welkin/shading/sheet_mesh.h"
 
@@ -32,17 +33,6 @@ float stillWeight(int round) {
 constexpr float kMostCount =
     1.0f;  // samples that a pixel in motion remembers: more would be resampled to a blur
 constexpr float kSpread = 2.0f;  // of variance clipping, standard deviations
-
-// Evenly over [0, 1) from the first number on: M. Roberts 2018, as in stills.
-float part(double a, int i) {
-  return static_cast<float>(std::fmod(0.5 + a * i, 1.0));
-}
-glm::vec2 jitterPx(int round) {
-  return glm::vec2(part(0.7548776662466927, round), part(0.5698402909980532, round)) - 0.5f;
-}
-glm::vec2 jitterStep(int round) {
-  return {part(0.6180339887498949, round), part(0.7548776662466927, round + 7)};
-}
 
 constexpr gpu::TextureOptions kColour{.format = gpu::Format::kRgba32F},
     kNumber{.format = gpu::Format::kR32F, .filter = gpu::Filter::kNearest};

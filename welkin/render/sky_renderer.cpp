@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <optional>
 
 #include "welkin/core/error.h"
@@ -16,6 +15,7 @@
 #include "welkin/render/cloud_textures.h"
 #include "welkin/render/display.h"
 #include "welkin/render/flare_pass.h"
+#include "welkin/render/jitter.h"
 #include "welkin/render/light_volume_pass.h"
 #include "welkin/render/programs.h"
 #include "welkin/render/sky_box_texture.h"
@@ -31,25 +31,6 @@
 
 namespace welkin::render {
 namespace {
-
-// Point i of a sequence that fills the unit square evenly from the start (M. Roberts 2018, "The Unreasonable
-// Effectiveness of Quasirandom Sequences": R2, R1 in one dimension). The first is the middle: where one
-// sub-frame is enough, it shows the pixels' centres.
-glm::vec2 quasiRandom2(int i) {
-  auto part = [i](double a) { return static_cast<float>(std::fmod(0.5 + a * i, 1.0)); };
-  return {part(0.7548776662466927), part(0.5698402909980532)};
-}
-
-// Point i of Sobol's sequence: two, four and so on of them are equidistant each way.
-glm::vec2 sobol2(unsigned i) {
-  std::uint32_t x = 0, y = 0;
-  for (std::uint32_t halves = 1u << 31, second = halves; i != 0; i >>= 1, halves >>= 1, second ^= second >> 1)
-    if (i & 1u) {
-      x ^= halves;
-      y ^= second;
-    }
-  return glm::vec2(x >> 8, y >> 8) * 0x1p-24f;
-}
 
 // The whole picture in strips, a few to a sub-frame.
 std::vector<gpu::Tile> rowBands(int width, int height) {
@@ -212,8 +193,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   Image<float> before;
   const std::vector<gpu::Tile> rows = rowBands(width, height);
   for (int i = 0; i < settings.subframes; ++i) {
-    p.set("uJitterPx", quasiRandom2(i) - 0.5f);
-    p.set("uJitterStep", sobol2(i));
+    p.set("uJitterPx", jitterPx(i));
+    p.set("uJitterStep", jitterStep(i));
     for (std::size_t r = 0; r < rows.size(); ++r) {
       triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = 1});
       if (!progress) continue;
@@ -225,7 +206,7 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
     Image<float> now = target.readPicture();
     const Image<std::uint8_t> wanted =
         i == 0 ? roughBlocks(now, settings.tolerance) : unsettledBlocks(before, now, settings.tolerance);
-    if (std::ranges::count(wanted.data, 0) == std::ssize(wanted.data)) break;
+    if (std::ranges::count(wanted.data, 1) == 0) break;
     target.setMask(wanted);
     before = std::move(now);
   }
@@ -262,8 +243,8 @@ float SkyRenderer::Impl::sunArriving(const scene::SkyState& state, const shading
   const gpu::Framebuffer target(texture);
   target.clear();
   for (int i = 0; i < kSubframes; ++i) {
-    p.set("uJitterPx", quasiRandom2(i) - 0.5f);
-    p.set("uJitterStep", sobol2(i));
+    p.set("uJitterPx", jitterPx(i));
+    p.set("uJitterStep", jitterStep(i));
     triangle.draw(p, target, {.blend = gpu::Blend::kAdd});
   }
   const Image<float> shares = target.readPicture();
