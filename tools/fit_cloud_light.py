@@ -9,7 +9,7 @@
 Examples of a file that is named several times count as often.
 
 Needs JAX and Optax (PyPI). A sixth of the skies is held back, and what the fit makes of them is printed; with --write all are
-used. The network: twenty-four numbers, two layers of twenty-eight x / (1 + |x|), two numbers: the logarithm of a factor of
+used. The network: twenty-four numbers, two layers of twenty-four x / (1 + |x|), two numbers: the logarithm of a factor of
 the light scattered more than once, and of the odds of light from above. Least squares of relative errors, by Adam
 (D. P. Kingma and J. Ba 2015, "Adam: A Method for Stochastic Optimization"). The examples are noisy means over a
 few paths; their noise has no bias, and evens out.
@@ -25,13 +25,15 @@ COLUMNS = ("to_sun from_sun up down to_eye cos_sun view_height sun_height ice co
            "paths genus sky distance behind_to_sun behind_from_sun behind_up behind_down surface height depth layer_extinction "
            "peak_share peak_g fluence fluence_ahead").split()
 SIMILARITY = 1 - 0.86  # the constants of shaders/lib/cloud_light.glsl
-WIDTH = 28
-LEAST = 0.01           # 1/sr: what errors are relative to where clouds are dark
+WIDTH = 24
+LEAST = 0.005          # 1/sr: what errors are relative to where clouds are dark
 OUTLIER = 40.0         # times the expected light: where a mean of a few paths is cut
+LOWEST_SUN = 0.02      # sine of its elevation; lower ones light little
 
 
 def read(files):
     rows = np.concatenate([np.fromfile(f, np.float32).reshape(-1, len(COLUMNS)) for f in files])
+    rows = rows[rows[:, COLUMNS.index("sun_height")] > LOWEST_SUN]
     return {name: rows[:, i].astype(np.float64) for i, name in enumerate(COLUMNS)}
 
 

@@ -43,12 +43,17 @@ WELKIN_FN float cloudPlacement(CloudLayer layer, sampler2D placement, vec2 p) {
   return layer.cellWeight * cells.x + layer.fractalWeight * cells.y + layer.patchWeight * patches.z;
 }
 
+// How much of an anvil there is at relative height h, [0, 1].
+WELKIN_FN float cloudAnvil(CloudLayer layer, float h) { return layer.anvil > 0.0f ? smoothstep(0.62f, 0.88f, h) : 0.0f; }
+
 // How much the surface is drawn in at relative height h in [0, 1], sd.
 WELKIN_FN float cloudProfile(CloudLayer layer, float h) {
   float towardsBase = 1.0f - h;
-  float anvil = layer.anvil * smoothstep(0.62f, 0.88f, h);
-  return layer.dome * pow(h, layer.domePower) + layer.belly * towardsBase * towardsBase - anvil;
+  return layer.dome * pow(h, layer.domePower) + layer.belly * towardsBase * towardsBase - layer.anvil * cloudAnvil(layer, h);
 }
+
+// Depth below the surface at which density is full, sd.
+WELKIN_FN float cloudEdge(CloudLayer layer, float h) { return layer.edge * mix(1.0f, kAnvilEdge, cloudAnvil(layer, h)); }
 
 // How far q is inside the cloud before the 3D noises shape it, sd; -1e3 above the layer's top and below its base.
 WELKIN_FN float cloudSurface(CloudLayer layer, sampler2D placement, vec3 q) {
@@ -60,7 +65,8 @@ WELKIN_FN float cloudSurface(CloudLayer layer, sampler2D placement, vec3 q) {
 // Strength of the large noise where the surface is s away. Noise shapes the surface but makes no cloud of its own: it fades out
 // outwards.
 WELKIN_FN float cloudShapeAmount(CloudLayer layer, float s, float h) {
-  float amount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h));
+  float amount = layer.shapeAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h)) *
+                 mix(1.0f, kAnvilShape, cloudAnvil(layer, h));
   return amount * smoothstep(-1.8f * layer.shapeAmount, -0.2f * layer.shapeAmount, s);
 }
 
@@ -78,7 +84,8 @@ WELKIN_FN float cloudClearance(CloudLayer layer, vec3 q, float s) {
 // Extinction at relative height h in [0, 1] where the cloud is full.
 WELKIN_FN float cloudBodyExtinction(CloudLayer layer, float h) {
   float vertical = smoothstep(0.0f, layer.bottomSoft, h) * smoothstep(0.0f, layer.topSoft, 1.0f - h);
-  return layer.extinction * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift);
+  return layer.extinction * vertical * mix(1.0f, 0.4f + 0.9f * sqrt(h), layer.lift) *
+         mix(1.0f, kAnvilExtinction, cloudAnvil(layer, h));
 }
 
 // How much of the small noise is seen at a distance, [0, 1]: bumps of some 40 m fade out when they are a few pixels wide.
@@ -107,13 +114,14 @@ WELKIN_FN float cloudExtinctionFrom(CloudLayer layer, sampler3D shapeNoise, samp
     clearM = -bound * layer.reachM * 0.5f;
     return 0.0f;
   }
-  if (layer.detailAmount > 0.0f && s < layer.edge + 2.0f * layer.detailAmount) {
+  float edge = cloudEdge(layer, h);
+  if (layer.detailAmount > 0.0f && s < edge + 2.0f * layer.detailAmount) {
     float amount = layer.detailAmount * mix(layer.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h));
-    s += (1.0f - detail) * cloudHiddenBumps(amount, layer.edge);
+    s += (1.0f - detail) * cloudHiddenBumps(amount, edge);
     if (detail > 0.0f) s += detail * amount * textureLod(detailNoise, (p3 - layer.detailShiftM) / layer.detailM, 0.0f).x;
   }
   if (s <= 0.0f) return 0.0f;
-  return cloudBodyExtinction(layer, h) * clamp(s / layer.edge, 0.0f, 1.0f);
+  return cloudBodyExtinction(layer, h) * clamp(s / edge, 0.0f, 1.0f);
 }
 
 // The same in one go and with all noises.

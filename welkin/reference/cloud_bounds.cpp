@@ -9,6 +9,8 @@
 namespace welkin::reference {
 namespace {
 
+using field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+
 constexpr float kRounding = 1e-4f;  // relative to what is summed; floats round to 6e-8
 constexpr int kMostCells = 4;       // along a side of what is looked up at one level
 
@@ -31,6 +33,11 @@ Interval united(Interval a, Interval b) {
 
 Interval smoothstep(float a, float b, Interval x) {
   return {glm::smoothstep(a, b, x.low), glm::smoothstep(a, b, x.high)};
+}
+
+// From a to b by shares.
+Interval mixed(float a, float b, Interval shares) {
+  return shifted((b - a) * shares, a);
 }
 
 // Along and across a direction.
@@ -146,21 +153,18 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval towardsBase{1.0f - h.high, 1.0f - h.low};
   const Interval belly =
       l.belly * Interval{towardsBase.low * towardsBase.low, towardsBase.high * towardsBase.high};
-  const Interval anvil = l.anvil * smoothstep(0.62f, 0.88f, h);
-  const Interval profile = dome + belly + -1.0f * anvil;
+  const Interval anvil = l.anvil > 0.0f ? smoothstep(0.62f, 0.88f, h) : Interval{};
+  const Interval profile = dome + belly + -l.anvil * anvil;
   const float slack = kRounding * (1.0f + std::abs(l.threshold));
   Interval s = shifted(placement, -l.threshold) + -1.0f * profile;
   s = {s.low - slack, s.high + slack};
 
   // cloudShapeAmount, cloudClearance.
-  auto amount = [&](float surface, float height) {
-    const float byHeight = l.shapeAtBase + (1.0f - l.shapeAtBase) * glm::smoothstep(0.0f, 0.35f, height);
-    return l.shapeAmount * byHeight * glm::smoothstep(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, surface);
-  };
-  const bool risesUp = l.shapeAtBase <= 1.0f;
-  const Interval amounts = l.shapeAmount > 0.0f ? Interval{amount(s.low, risesUp ? h.low : h.high),
-                                                           amount(s.high, risesUp ? h.high : h.low)}
-                                                : Interval{};
+  const Interval amounts = l.shapeAmount > 0.0f
+                               ? l.shapeAmount * (mixed(l.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h)) *
+                                                  mixed(1.0f, kAnvilShape, anvil) *
+                                                  smoothstep(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, s))
+                               : Interval{};
   if (s.high + 2.5f * amounts.high + 2.0f * l.detailAmount <= 0.0f) return {};
   bool clear = s.low + 2.5f * amounts.low + 2.0f * l.detailAmount <= slack;  // somewhere, maybe
 
@@ -175,10 +179,9 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
   if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};
   clear = clear || s.low + 2.0f * l.detailAmount <= slack;
-  if (l.detailAmount > 0.0f && s.low < l.edge + 2.0f * l.detailAmount) {
-    const Interval byHeight = shifted((1.0f - l.shapeAtBase) * Interval{glm::smoothstep(0.0f, 0.2f, h.low),
-                                                                        glm::smoothstep(0.0f, 0.2f, h.high)},
-                                      l.shapeAtBase);
+  const Interval edge = l.edge * mixed(1.0f, kAnvilEdge, anvil);
+  if (l.detailAmount > 0.0f && s.low < edge.high + 2.0f * l.detailAmount) {
+    const Interval byHeight = mixed(l.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h));
     const Interval detail = l.detailAmount * (byHeight * over(detail_, l.detailShiftM, l.detailM));
     s = s + Interval{std::min(detail.low, 0.0f), std::max(detail.high, 0.0f)};  // may be left out
   }
@@ -188,13 +191,14 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
       glm::smoothstep(0.0f, l.bottomSoft, h.low) * glm::smoothstep(0.0f, l.topSoft, 1.0f - h.high);
   const float thick =
       glm::smoothstep(0.0f, l.bottomSoft, h.high) * glm::smoothstep(0.0f, l.topSoft, 1.0f - h.low);
-  auto lift = [&](float height) { return 1.0f + (0.4f + 0.9f * std::sqrt(height) - 1.0f) * l.lift; };
-  const auto [less, more] = std::minmax({lift(h.low), lift(h.high)});
-  auto extinction = [&](float surface, float vertical, float lifted) {
-    return l.extinction * std::clamp(surface / l.edge, 0.0f, 1.0f) * vertical * lifted;
-  };
-  return {extinction(s.high, thick, more) * (1.0f + kRounding),
-          clear ? 0.0f : std::max(extinction(s.low, thin, less) * (1.0f - kRounding), 0.0f), s.low >= l.edge};
+  const Interval lifted{0.4f + 0.9f * std::sqrt(h.low), 0.4f + 0.9f * std::sqrt(h.high)};
+  const Interval body =
+      l.extinction * (Interval{thin, thick} * shifted(l.lift * shifted(lifted, -1.0f), 1.0f) *
+                      mixed(1.0f, kAnvilExtinction, anvil));
+  return {body.high * std::clamp(s.high / edge.low, 0.0f, 1.0f) * (1.0f + kRounding),
+          clear ? 0.0f
+                : std::max(body.low * std::clamp(s.low / edge.high, 0.0f, 1.0f) * (1.0f - kRounding), 0.0f),
+          s.low >= edge.high};
 }
 
 }  // namespace welkin::reference

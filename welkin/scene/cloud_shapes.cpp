@@ -19,9 +19,10 @@ struct Habit {
   double cell, cellMinM, cellMaxM;  // distance between cells
   double patchM;                    // size of mesoscale patches
   double cellWeight, fractalWeight, patchWeight;
-  double warp;     // share of the cell
-  double stretch;  // along the wind
-  double dome, domePower, belly, anvil;
+  double warp;            // share of the cell
+  double stretch;         // along the wind
+  double dome, domeFull;  // domeFull: so much more at 8 oktas, that gaps which close stay as hollows
+  double domePower, belly, anvil;
   double bottomSoft, topSoft;
   double blob, blobMinM, blobMaxM;  // largest blob of the 3D noise
   double shapeAmount, shapeAtBase, shapeStretch, shapeTall;
@@ -35,43 +36,43 @@ struct Habit {
 // In the order of weather::Genus. Chosen by eye against photographs of the International Cloud Atlas.
 constexpr std::array<Habit, 11> kHabits = {{
     // cumulus: flat bases, domed towers, cauliflower
-    {1.7, 700, 4000, 9000, .84, .20, .50, .35, 1.0, 2.6, 1.55, .05, 0,   .05,
-     .06, .42, 250,  900,  .48, .22, 1.0, 1.0, 75,  .14, .20,  .75, .15, 1.2},
+    {1.7, 700, 4000, 9000, .84, .20, .50, .10, 1.0, 2.6, 2.0, 1.55, .05, 0,  .05,
+     .06, .42, 250,  900,  .48, .22, 1.0, 1.0, 75,  .14, .20, .75,  .15, 1.2},
     // stratocumulus: lumps and rolls, shallow, flat above and below
-    {4.0, 900, 3500, 14000, .78, .40, .42, .40, 1.7, .55, 2.2, .10, 0,   .12,
-     .18, .90, 250,  700,   .42, .50, 1.2, 1.0, 80,  .17, .20, .60, .10, .5},
+    {4.0, 900, 3500, 14000, .78, .40, .42, .10, 1.7, 1.40, 2.6, 1.6, .10, 0, .12,
+     .18, .90, 250,  700,   .42, .50, 1.2, 1.0, 80,  .17,  .20, .60, .10, .5},
     // stratus: a featureless sheet
-    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, .30, 0,   .25,
+    {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, 1.6, .30, 0, .25,
      .35, 1.2,  300,  900,   .34, .75, 1.5, 1.0, 90,  .20, .40, .30, .10, .2},
     // nimbostratus: deep, dark, ragged beneath
-    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 2.5, .50, 0,   .12,
+    {1.2, 3000, 9000, 30000, .20, .80, .55, .60, 1.3, .50, 0,   2.5, .50, 0, .12,
      .25, .30,  400,  1200,  .35, .80, 1.3, 1.0, 220, .12, .60, .30, .20, .4},
     // cumulonimbus: broad below, an anvil above that the wind draws out
-    {1.9, 12000, 24000, 50000, .80, .20, .38, .25, 1.0, .50,  1.0, -.70, 1.05, .02,
-     .12, .13,   600,   1300,  .24, .30, 1.0, 1.0, 160, .065, .15, .55,  .40,  4.0},
+    {1.9, 12000, 24000, 50000, .80, .20, .38, .08, 1.0, .50,  0,   1.0, -.70, 1.05, .02,
+     .12, .13,   600,   1300,  .24, .30, 1.0, 1.0, 160, .065, .15, .55, .40,  4.0},
     // altocumulus: patches of small flat cells
-    {1.4, 400, 900, 5500, .80, .20, .90, .45, 1.3, 1.3, 1.6, 1.2, 0,   .20,
+    {1.4, 400, 900, 5500, .80, .20, .90, .20, 1.3, 1.3, 1.0, 1.6, 1.2, 0, .20,
      .25, .55, 120, 300,  .28, .70, 1.2, 0.4, 60,  .12, .60, .20, .20, .3},
     // altostratus: a thin wide veil, streaked
-    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 2.0, .35, 0,   .30,
+    {3.0, 3000, 9000, 40000, .10, .85, .52, .60, 2.2, .35, 0,   2.0, .35, 0, .30,
      .35, .50,  500,  1500,  .30, .80, 2.5, 1.0, 260, .10, .90, .10, .60, .2},
     // cirrus: fibres drawn out by wind shear
-    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60, 1.0,  .30, 0,   .25,
+    {2.0, 1200, 3000, 26000, .10, .80, .58, 1.10, 7.0, .60, 0,    1.0, .30, 0, .25,
      .25, .70,  350,  700,   .75, .90, 9.0, 1.0,  130, .55, 1.70, .00, 4.0, .3},
     // cirrocumulus: grains and ripples
-    {.9,  180, 380, 9000, .82, .25, .52, .50, 1.8, .45, 2.0, .35, 0,   .25,
+    {.9,  180, 380, 9000, .82, .25, .52, .15, 1.8, .45, 0,   2.0, .35, 0, .25,
      .25, .40, 90,  200,  .40, .80, 1.8, 1.0, 45,  .15, .60, .00, .50, .2},
     // cirrostratus: an even veil
-    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25, 2.0,  .25, 0,   .30,
+    {5.0, 4000, 9000, 60000, .05, .80, .60, .60, 4.0, .25, 0,    2.0, .25, 0, .30,
      .30, .80,  700,  1500,  .22, .90, 5.0, 1.0, 300, .10, 1.50, .00, 2.0, .1},
     // fog
-    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 1.6, 0,   0,   .001,
+    {8.0, 900, 2500, 9000, .10, .85, .50, .50, 1.3, .70, 0,   1.6, 0,   0, .001,
      .40, 1.2, 90,   220,  .30, .40, 1.5, 1.0, 60,  .12, .60, .00, .20, .1},
 }};
 
 // Deep cumulus: towers that are broad below, with turrets above.
-constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .78, .25, .40, .45, 1.0, 1.9, 1.85, -.10, 0,   .05,
-                              .05, .28, 250,  2000,  .54, .25, 1.0, 1.0, 115, .10, .18,  .75,  .15, 1.2};
+constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .78, .25, .40, .10, 1.0, 1.9, 2.0, 1.85, -.10, 0,  .05,
+                              .05, .28, 250,  2000,  .54, .25, 1.0, 1.0, 115, .10, .18, .75,  .15,  1.2};
 constexpr double kMediocrisM = 1000.0, kCongestusM = 2000.0;  // depths of either
 
 Habit mixed(const Habit& a, const Habit& b, double share) {
@@ -135,7 +136,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.patchWeight = static_cast<float>(habit.patchWeight / weights);
   s.patchM = static_cast<float>(6.0 * habit.patchM);
   s.warpM = static_cast<float>(habit.warp * cell);
-  s.dome = static_cast<float>(habit.dome);
+  s.dome = static_cast<float>(habit.dome + habit.domeFull * std::clamp((layer.oktas - 4.0) / 4.0, 0.0, 1.0));
   s.domePower = static_cast<float>(habit.domePower);
   s.belly = static_cast<float>(habit.belly);
   s.anvil = static_cast<float>(habit.anvil);
@@ -156,9 +157,10 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
       glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
   s.edge = static_cast<float>(habit.edge);
   s.lift = static_cast<float>(habit.lift);
-  // An anvil's underside is the steepest of all.
+  // The steepest: tops, and the underside of an anvil.
+  const double atTop = depth / std::max(4.0, s.dome * habit.domePower);
   const double underAnvil = habit.anvil > 0.0 ? 0.14 * depth / habit.anvil : depth;
-  s.reachM = static_cast<float>(std::min({0.08 * cell, 0.25 * depth, underAnvil}));
+  s.reachM = static_cast<float>(std::min({0.08 * cell, atTop, underAnvil}));
   return s;
 }
 

@@ -55,10 +55,12 @@ TEST(GroundLight, IsTheSameEverywhereUnderAClearAndUnderAClosedSky) {
   }
 }
 
+// Contrast lifts the mean of the shares a little, as that which they are shares of is taken before all of it
+// is smoothed.
 TEST(GroundLight, IsDarkUnderTowersAndBrightBetweenThem) {
   const Image<float> shares = sharesOf(cloudyScene(40.0, {Genus::kCumulonimbus}, 3.0));
   const Range sky = rangeOf(shares, 0), all = rangeOf(shares, 1);
-  EXPECT_NEAR(sky.mean, 1.0, 0.1);
+  EXPECT_NEAR(sky.mean, 1.0, 0.15);
   EXPECT_NEAR(all.mean, 1.0, 0.1);
   EXPECT_LT(sky.least, 0.6);
   EXPECT_LT(all.least, 0.3);

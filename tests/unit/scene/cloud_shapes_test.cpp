@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
@@ -90,6 +92,22 @@ class Shape {
     return depthM / kSteps * n / clouds;
   }
 
+  // Of the tops above places with cloud, how far the lower and the upper tenth are apart: a share of the
+  // layer's depth.
+  double reliefOfTops() const {
+    constexpr int kSteps = 100;
+    std::vector<double> tops;
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x)
+        for (int i = kSteps - 1; i > 0; --i)
+          if (at(x, y, static_cast<double>(i) / kSteps)) {
+            tops.push_back(static_cast<double>(i) / kSteps);
+            break;
+          }
+    std::ranges::sort(tops);
+    return tops[tops.size() * 9 / 10] - tops[tops.size() / 10];
+  }
+
  private:
   static constexpr int kPlaces = 150;
   static constexpr float kSpacingM = 600.0f;
@@ -125,6 +143,15 @@ TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
   EXPECT_GT(towers.carried(0.55, 0.1), 0.98);
   // Their turrets overhang, as no wall does.
   EXPECT_LT(towers.carried(0.8, 0.55), 0.92);
+}
+
+// Gaps that close as the sky is covered stay as hollows between tops.
+TEST(CloudShapes, CoveredSkiesAreNotPlanesFromAbove) {
+  for (const double oktas : {4.0, 6.0, 8.0}) {
+    SCOPED_TRACE(oktas);
+    EXPECT_GT(Shape(Genus::kStratocumulus, 500.0, oktas).reliefOfTops(), 0.3);
+    EXPECT_GT(Shape(Genus::kCumulus, 1200.0, oktas).reliefOfTops(), 0.3);
+  }
 }
 
 TEST(CloudShapes, CellsOfAltocumulusAreFlat) {
