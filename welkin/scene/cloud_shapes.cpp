@@ -38,10 +38,10 @@ constexpr std::array<Habit, 11> kHabits = {{
     // cumulus: flat bases, domed towers, cauliflower
     {1.7, 700, 4000, 9000, .84, .20, .50, .10, 1.0, 2.6, 2.0, 1.55, .05, 0,  .05,
      .06, .42, 250,  900,  .48, .22, 1.0, 1.0, 75,  .14, .20, .75,  .15, 1.2},
-    // stratocumulus: lumps and rolls, shallow, flat above and below
+    // stratocumulus: lumps and rolls, shallow, flat below
     {4.0, 900, 3500, 14000, .78, .40, .42, .10, 1.7, 1.40, 2.6, 1.6, .10, 0, .12,
      .18, .90, 250,  700,   .42, .50, 1.2, 1.0, 80,  .17,  .20, .60, .10, .5},
-    // stratus: a featureless sheet
+    // stratus: a featureless sheet, gently uneven above
     {6.0, 1500, 5000, 20000, .15, .85, .50, .50, 1.3, .40, 2.0, 1.6, .30, 0, .25,
      .35, 1.2,  300,  900,   .34, .75, 1.5, 1.0, 90,  .20, .40, .30, .10, .2},
     // nimbostratus: deep, dark, ragged beneath

@@ -92,6 +92,33 @@ class Shape {
     return depthM / kSteps * n / clouds;
   }
 
+  // Extinction of the densest of places, 1/m.
+  double densest(double height) const {
+    const field::CloudLayer& l = clouds_.layers()[0];
+    const auto h = static_cast<float>(height);
+    float most = 0.0f;
+    for (int y = 0; y < kPlaces; ++y)
+      for (int x = 0; x < kPlaces; ++x) {
+        const glm::vec2 p = kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces);
+        const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
+        most = std::max(most, clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop}));
+      }
+    return static_cast<double>(most);
+  }
+  // By how much cells are stretched and squeezed where they are pushed about (cloudPlacement() in
+  // shaders/lib/clouds.glsl): the root mean square of the change of the push from place to place.
+  double strain() const {
+    const field::CloudLayer& l = clouds_.layers()[0];
+    const Image<float>& map = noise_->placement;
+    double sum = 0.0;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x + 1 < map.width; ++x)
+        for (const int c : {0, 1}) {
+          const double change = static_cast<double>(map.at(x + 1, y, c) - map.at(x, y, c));
+          sum += change * change / (2.0 * (map.width - 1) * map.height);
+        }
+    return static_cast<double>(l.warpM / l.patchM) * map.width * std::sqrt(sum);
+  }
   // Of the tops above places with cloud, how far the lower and the upper tenth are apart: a share of the
   // layer's depth.
   double reliefOfTops() const {
@@ -133,6 +160,9 @@ TEST(CloudShapes, ThundercloudsAreBroadBelowAndBroaderAbove) {
     // A trunk stands on a base and bears an anvil.
     EXPECT_GT(storm.carried(0.55, 0.1), 0.98);
     EXPECT_GT(storm.carried(0.55, 0.9), 0.98);
+    // Which is thin for its size.
+    EXPECT_GT(storm.densest(0.8), 0.1 * storm.densest(0.5));
+    EXPECT_LT(storm.densest(0.8), 0.5 * storm.densest(0.5));
   }
 }
 
@@ -143,6 +173,14 @@ TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
   EXPECT_GT(towers.carried(0.55, 0.1), 0.98);
   // Their turrets overhang, as no wall does.
   EXPECT_LT(towers.carried(0.8, 0.55), 0.92);
+}
+
+// Strained cells would be bands with plane walls.
+TEST(CloudShapes, HeapsAreHardlyStrained) {
+  for (const double depthM : {400.0, 1200.0, 4000.0})
+    EXPECT_LT(Shape(Genus::kCumulus, depthM, 3.0).strain(), 0.35) << depthM;
+  EXPECT_LT(Shape(Genus::kStratocumulus, 500.0, 3.0).strain(), 0.35);
+  EXPECT_LT(Shape(Genus::kCumulonimbus, 10000.0, 3.0).strain(), 0.35);
 }
 
 // Gaps that close as the sky is covered stay as hollows between tops.
