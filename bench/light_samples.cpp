@@ -45,7 +45,7 @@ namespace {
 
 namespace shared {
 using namespace welkin::glsl;
-using field::CloudLayer, field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 // After it.
 #include "shaders/lib/phase.glsl"

@@ -5,11 +5,6 @@
 
 WELKIN_CONST int kMaxLayers = 10;  // eight of cloud, two of rain
 
-// An anvil is ice: smooth, with soft edges, thin for its size. Against the cloud below it:
-WELKIN_CONST float kAnvilShape = 0.55f;      // strength of the large 3D noise
-WELKIN_CONST float kAnvilEdge = 8.0f;        // depth of the edge
-WELKIN_CONST float kAnvilExtinction = 0.3f;
-
 struct CloudLayer {
   float baseM;          // height of the base above the ground
   float topM;           // height of the highest tops

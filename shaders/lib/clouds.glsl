@@ -43,6 +43,11 @@ WELKIN_FN float cloudPlacement(CloudLayer layer, sampler2D placement, vec2 p) {
   return layer.cellWeight * cells.x + layer.fractalWeight * cells.y + layer.patchWeight * patches.z;
 }
 
+// An anvil is ice: smooth, with soft edges, thin for its size. Against the cloud below it:
+WELKIN_CONST float kAnvilShape = 0.55f;      // strength of the large 3D noise
+WELKIN_CONST float kAnvilEdge = 8.0f;        // depth of the edge
+WELKIN_CONST float kAnvilExtinction = 0.3f;
+
 // How much of an anvil there is at relative height h, [0, 1].
 WELKIN_FN float cloudAnvil(CloudLayer layer, float h) { return layer.anvil > 0.0f ? smoothstep(0.62f, 0.88f, h) : 0.0f; }
 

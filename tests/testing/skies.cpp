@@ -72,6 +72,14 @@ scene::Scene fromHeight(scene::Scene s, double eyeM) {
   return s;
 }
 
+void changeLayers(scene::SkyState& state,
+                  const std::function<void(std::vector<field::CloudLayer>&)>& change) {
+  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
+  change(layers);
+  const auto noise = state.clouds->sharedNoise();  // a copy, which outlives the field
+  state.clouds.emplace(noise, layers, state.scene.place.altitudeM);
+}
+
 scene::SkyState airlessSky(scene::Scene s, double sunLux) {
   s.ground.albedo = {0.0, 0.0, 0.0};
   s.output.sunDisc = false;

@@ -3,7 +3,9 @@
 // All of them lie at 30 degrees north on the meridian of Greenwich, at sea level, unless said otherwise.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
+#include <vector>
 
 #include "welkin/scene/scene.h"
 #include "welkin/scene/sky_state.h"
@@ -29,6 +31,9 @@ scene::Scene sized(scene::Scene s, int width, int height);
 scene::Scene looking(scene::Scene s, double headingDeg, double pitchDeg, double fovDeg = 70.0);
 scene::Scene projected(scene::Scene s, scene::Projection projection, int width, int height);
 scene::Scene fromHeight(scene::Scene s, double eyeM);
+
+// The same sky with its layers, of cloud and of rain, changed.
+void changeLayers(scene::SkyState& state, const std::function<void(std::vector<field::CloudLayer>&)>& change);
 
 // The sky of a scene without air, discs and light of the ground, in a sun of so many lux.
 scene::SkyState airlessSky(scene::Scene s, double sunLux);

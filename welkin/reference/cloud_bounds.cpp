@@ -6,10 +6,16 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "welkin/core/glsl.h"
+
 namespace welkin::reference {
 namespace {
 
-using field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+namespace shared {
+using namespace welkin::glsl;
+using field::CloudLayer;
+#include "shaders/lib/clouds.glsl"
+}  // namespace shared
 
 constexpr float kRounding = 1e-4f;  // relative to what is summed; floats round to 6e-8
 constexpr int kMostCells = 4;       // along a side of what is looked up at one level
@@ -153,7 +159,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval towardsBase{1.0f - h.high, 1.0f - h.low};
   const Interval belly =
       l.belly * Interval{towardsBase.low * towardsBase.low, towardsBase.high * towardsBase.high};
-  const Interval anvil = l.anvil > 0.0f ? smoothstep(0.62f, 0.88f, h) : Interval{};
+  const Interval anvil{shared::cloudAnvil(l, h.low), shared::cloudAnvil(l, h.high)};
   const Interval profile = dome + belly + -l.anvil * anvil;
   const float slack = kRounding * (1.0f + std::abs(l.threshold));
   Interval s = shifted(placement, -l.threshold) + -1.0f * profile;
@@ -162,7 +168,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   // cloudShapeAmount, cloudClearance.
   const Interval amounts = l.shapeAmount > 0.0f
                                ? l.shapeAmount * (mixed(l.shapeAtBase, 1.0f, smoothstep(0.0f, 0.35f, h)) *
-                                                  mixed(1.0f, kAnvilShape, anvil) *
+                                                  mixed(1.0f, shared::kAnvilShape, anvil) *
                                                   smoothstep(-1.8f * l.shapeAmount, -0.2f * l.shapeAmount, s))
                                : Interval{};
   if (s.high + 2.5f * amounts.high + 2.0f * l.detailAmount <= 0.0f) return {};
@@ -179,7 +185,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
   if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};
   clear = clear || s.low + 2.0f * l.detailAmount <= slack;
-  const Interval edge = l.edge * mixed(1.0f, kAnvilEdge, anvil);
+  const Interval edge = l.edge * mixed(1.0f, shared::kAnvilEdge, anvil);
   if (l.detailAmount > 0.0f && s.low < edge.high + 2.0f * l.detailAmount) {
     const Interval byHeight = mixed(l.shapeAtBase, 1.0f, smoothstep(0.0f, 0.2f, h));
     const Interval detail = l.detailAmount * (byHeight * over(detail_, l.detailShiftM, l.detailM));
@@ -194,7 +200,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval lifted{0.4f + 0.9f * std::sqrt(h.low), 0.4f + 0.9f * std::sqrt(h.high)};
   const Interval body =
       l.extinction * (Interval{thin, thick} * shifted(l.lift * shifted(lifted, -1.0f), 1.0f) *
-                      mixed(1.0f, kAnvilExtinction, anvil));
+                      mixed(1.0f, shared::kAnvilExtinction, anvil));
   return {body.high * std::clamp(s.high / edge.low, 0.0f, 1.0f) * (1.0f + kRounding),
           clear ? 0.0f
                 : std::max(body.low * std::clamp(s.low / edge.high, 0.0f, 1.0f) * (1.0f - kRounding), 0.0f),

@@ -9,7 +9,7 @@ namespace welkin::reference {
 namespace {
 
 using namespace welkin::glsl;
-using field::CloudLayer, field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+using field::CloudLayer;
 
 // Four floats in one register of any machine: GCC's and clang's.
 using Four = float __attribute__((vector_size(16)));

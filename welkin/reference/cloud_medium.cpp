@@ -12,7 +12,7 @@ namespace welkin::reference {
 namespace {
 
 using namespace welkin::glsl;
-using field::CloudLayer, field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 
 // Positions along so long a piece of a ray are taken to lie on a straight line of cloud positions: they bend

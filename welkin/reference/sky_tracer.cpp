@@ -32,7 +32,7 @@ namespace {
 
 namespace shared {
 using namespace welkin::glsl;
-using field::CloudLayer, field::kAnvilEdge, field::kAnvilExtinction, field::kAnvilShape;
+using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 #include "shaders/lib/ground.glsl"
 #include "shaders/lib/milky_way.glsl"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
+#include "tests/testing/skies.h"
 #include "welkin/core/units.h"
 #include "welkin/optics/mie_droplets.h"
 #include "welkin/optics/phase.h"
@@ -32,14 +32,6 @@ scene::Scene deck(weather::Genus genus) {
   layer.effectiveRadiusUm = 6.0;
   s.layers = {layer};
   return s;
-}
-
-// Without gaps, and flat above.
-void close(scene::SkyState& state) {
-  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
-  layers.at(0).threshold = -50.0f;
-  const auto noise = state.clouds->sharedNoise();  // a copy, which outlives the field
-  state.clouds.emplace(noise, layers, 0.0);
 }
 
 glm::dvec3 meanLuminance(SkyRenderer& renderer, const scene::SkyState& state) {
@@ -67,7 +59,8 @@ TEST(Droplets, MieAddsItsSingleScattering) {
   SkyRenderer renderer({.debug = true});
   scene::Scene s = deck(weather::Genus::kStratus);
   scene::SkyState state = scene::buildSky(s, 0.0);
-  close(state);
+  // Without gaps, and flat above.
+  testing::changeLayers(state, [](auto& layers) { layers.at(0).threshold = -50.0f; });
   const double diameterUm = scene::dropletDiameterUm(state.weather);
   const Image<float> table = optics::mieDroplets(diameterUm);
   const auto fit = optics::dropletPhase(static_cast<float>(diameterUm));

@@ -31,11 +31,10 @@ scene::SkyState veil(Genus genus) {
   s.layers[0].topM = 9000.0;
   scene::SkyState state = testing::airlessSky(s, kSunLux);
   state.ambient = {};
-  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
-  layers.at(0).threshold = -50.0f;
-  layers.at(0).extinction = kExtinction;
-  const auto noise = state.clouds->sharedNoise();  // a copy, which outlives the field
-  state.clouds.emplace(noise, layers, 0.0);
+  testing::changeLayers(state, [](auto& layers) {
+    layers.at(0).threshold = -50.0f;
+    layers.at(0).extinction = kExtinction;
+  });
   return state;
 }
 

@@ -36,11 +36,10 @@ scene::SkyState rainAlone(weather::PrecipitationKind kind, double mmPerH = 10.0)
   scene::SkyState state = testing::airlessSky(s, kSunLux);
   state.ambient = {};
   state.weather.precipitation = kind;
-  std::vector<field::CloudLayer> layers(state.clouds->layers().begin(), state.clouds->layers().end());
-  layers.at(0).threshold = 50.0f;
-  layers.at(1).threshold = -50.0f;
-  const auto noise = state.clouds->sharedNoise();  // a copy, which outlives the field
-  state.clouds.emplace(noise, layers, 0.0);
+  testing::changeLayers(state, [](auto& layers) {
+    layers.at(0).threshold = 50.0f;
+    layers.at(1).threshold = -50.0f;
+  });
   return state;
 }
 

@@ -34,16 +34,8 @@ class Shape {
   Shape(Genus genus, double depthM, double oktas)
       : noise_(field::makeCloudNoise(1)), clouds_(made(layerOf(genus, depthM, oktas))) {}
 
-  bool at(int x, int y, double height) const {
-    return at(kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces), height);
-  }
-  bool at(glm::vec2 placeM, double height) const {
-    const field::CloudLayer& l = clouds_.layers()[0];
-    const auto h = static_cast<float>(height);
-    const glm::vec2 p = placeM + l.shearM * h;
-    const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
-    return clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop}) > 0.0f;
-  }
+  bool at(int x, int y, double height) const { return at(place(x, y), height); }
+  bool at(glm::vec2 placeM, double height) const { return extinction(placeM, height) > 0.0f; }
   // Of places, those that have cloud.
   double share(double height) const {
     int n = 0;
@@ -94,15 +86,9 @@ class Shape {
 
   // Extinction of the densest of places, 1/m.
   double densest(double height) const {
-    const field::CloudLayer& l = clouds_.layers()[0];
-    const auto h = static_cast<float>(height);
     float most = 0.0f;
     for (int y = 0; y < kPlaces; ++y)
-      for (int x = 0; x < kPlaces; ++x) {
-        const glm::vec2 p = kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces);
-        const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
-        most = std::max(most, clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop}));
-      }
+      for (int x = 0; x < kPlaces; ++x) most = std::max(most, extinction(place(x, y), height));
     return static_cast<double>(most);
   }
   // By how much cells are stretched and squeezed where they are pushed about (cloudPlacement() in
@@ -138,6 +124,15 @@ class Shape {
  private:
   static constexpr int kPlaces = 150;
   static constexpr float kSpacingM = 600.0f;
+
+  static glm::vec2 place(int x, int y) { return kSpacingM * (glm::vec2(x, y) - 0.5f * kPlaces); }
+  float extinction(glm::vec2 placeM, double height) const {
+    const field::CloudLayer& l = clouds_.layers()[0];
+    const auto h = static_cast<float>(height);
+    const glm::vec2 p = placeM + l.shearM * h;
+    const float drop = glm::dot(p, p) / static_cast<float>(2.0 * clouds_.earthRadiusM());
+    return clouds_.extinction({p.x, p.y, l.baseM + h * (l.topM - l.baseM) - drop});
+  }
 
   field::CloudField made(const weather::Layer& layer) const {
     Scene scene;
