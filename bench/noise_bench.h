@@ -28,8 +28,8 @@ struct NoiseTime {
 };
 
 // Measures each workload on each instruction set of this processor with one thread; on the best also with two
-// threads; W1 and W4 on the best from 64^3 to 512^3. By Google Benchmark, `repetitions` times each; takes
-// about a minute for nine.
+// threads; W1, W3 and W4 on the best from 64^3 to 512^3, W3 with two threads too. By Google Benchmark,
+// `repetitions` times each; takes about a minute for nine.
 std::vector<NoiseTime> measureNoise(int repetitions);
 
 }  // namespace welkin::bench

@@ -77,10 +77,14 @@ HWY_INLINE void forChunks(const FillJob& job, const Block& b, Scratch& scratch, 
 template <class Sink>
 void fillSink(const FillJob& job, const Block& b, Scratch& scratch) {
   GradientRows rows(job.gradients, scratch, b.x, b.width);
-  rows.beginSlices(b.z, b.slices);
-  for (int y = b.y; y < b.y + b.rows;)
-    y += rows.fillChunkInto(y, b.y + b.rows - y,
-                            [&](int slice, int) HWY_ATTR { return Sink(job, b.x, y, b.z + slice, b.width); });
+  for (int z = b.z; z < b.z + b.slices;) {
+    const int count = HWY_MIN(job.gradients.togetherFrom(z), b.z + b.slices - z);
+    rows.beginSlices(z, count);
+    for (int y = b.y; y < b.y + b.rows;)
+      y += rows.fillChunkInto(y, b.y + b.rows - y,
+                              [&](int slice, int) HWY_ATTR { return Sink(job, b.x, y, z + slice, b.width); });
+    z += count;
+  }
 }
 
 // Sums of gradient noise, each a channel.

@@ -66,6 +66,11 @@ struct Corner {
   float weight, reach;
 };
 
+// Floats of more bytes are written past the caches: of what takes long to work out, more than a core's own
+// caches hold, which have better to keep; of what memory would be waited for, more than all caches are likely
+// to hold.
+inline constexpr std::size_t kCoreBytes = std::size_t{4} << 20, kAllBytes = std::size_t{16} << 20;
+
 // Where samples along one axis lie on an octave's lattice.
 struct Place {
   Corner low, high;
@@ -86,9 +91,9 @@ struct RowPlaces {
 // A strip of samples of a chunk of rows is worked on at a time: octave by octave all lines of lattice points
 // that it lies between, then its sums. Long strips and chunks share what each octave costs beside its lines,
 // and write memory in its own order; the lines stay in a core's own cache. With many octaves strips are half
-// as long, and sums that wait to be put together come in smaller chunks. Arrays over x are padded to a
-// multiple of kPad.
-inline constexpr int kStrip = 256, kMostChunk = 32, kSmallChunk = 8, kPad = 64;
+// as long, and sums that wait to be put together come in smaller chunks. Of boxes at most kNarrow across,
+// whose lines are short, chunks are twice as high. Arrays over x are padded to a multiple of kPad.
+inline constexpr int kStrip = 256, kNarrow = 64, kMostChunk = 64, kWideChunk = 32, kSmallChunk = 8, kPad = 64;
 constexpr int padded(int n) {
   return (n + kPad - 1) / kPad * kPad;
 }
@@ -151,6 +156,9 @@ struct GradientTables {
   bool published = false;        // some lattice is
   float bias = 0.0f;             // added to every sum
   Fractal fractal = Fractal::kFbm;
+
+  // Slices from z on that are worked on together.
+  int togetherFrom(int z) const { return slices - (z + leadSlices) % slices; }
 };
 
 // For each set of a vector's lanes, by bits, these lanes first and in their order.
@@ -249,7 +257,7 @@ struct FillJob {
   float bias;             // of sums that are not gradients'
   float low, high;        // clamp of normalised values
   float quantiseScale, quantiseBias;  // for integer formats, to [0, greatest]
-  bool stream;                        // `out` is larger than caches: write past them
+  bool stream;                        // `out` is large: write past the caches
 
   // Whether the sums of gradients are stored as they are made.
   bool direct() const {

@@ -17,7 +17,6 @@ namespace welkin::noise {
 namespace {
 
 constexpr std::size_t kAlignment = 64;
-constexpr std::size_t kStreamBytes = std::size_t{4} << 20;  // more than a core's own caches hold
 
 std::byte* allocate(std::size_t bytes) {
   return static_cast<std::byte*>(::operator new(bytes, std::align_val_t{kAlignment}));
@@ -110,7 +109,7 @@ class Tables {
     g.terms = g.first[sums];
     const bool narrow = job_.cellTerms > 0 || g.terms > kManyTerms || job_.box.size.x <= kStrip / 2;
     g.strip = narrow ? kStrip / 2 : kStrip;
-    g.chunk = job_.direct() ? kMostChunk : kSmallChunk;
+    g.chunk = !job_.direct() ? kSmallChunk : job_.box.size.x <= kNarrow ? kMostChunk : kWideChunk;
     g.lead = job_.cellTerms > 0 ? job_.lead[1] % g.chunk : 0;  // blocks of cells begin at tiles
     g.lines = 0;
     g.term = take<TermTables>(static_cast<std::size_t>(g.terms));
@@ -509,6 +508,14 @@ double cellsOfSample(const FillJob& job) {
 // function, which looks at some samples' own alone, is as fast and takes no memory.
 constexpr double kCrowded = 8.0, kPointwise = 512.0;
 
+// Whether threads work samples out faster than memory takes them: measured with one thread and with two.
+bool waitsForMemory(const FillJob& job) {
+  return job.params->kind == Kind::kPerlin && job.gradients.terms < 2 * threadCount();
+}
+
+// Samples of gradient noise that are enough for a block.
+constexpr int kBlock = 1 << 15;
+
 // Rows of a block of value noise: fewer where so many lattice points lie under each that they take much
 // memory.
 int valueRows(const FillJob& job) {
@@ -535,13 +542,13 @@ void fillGrid(FillJob& job) {
   job.high = static_cast<float>(n.high);
   job.quantiseScale = static_cast<float>(q.scale * most);
   job.quantiseBias = static_cast<float>(q.bias * most);
-  const std::size_t bytes = job.format == Format::kFloat ? 4 : 0;
-  job.stream = bytes * size.x * size.y * size.z > kStreamBytes;
   const ScratchLoan memory;
   memory->reset();
   const double crowd = cellsOfSample(job);
   const bool pointwise = crowd > kPointwise;
   if (!pointwise) makeTables(job, *memory);
+  const std::size_t bytes = job.format == Format::kFloat ? 4 : 0;
+  job.stream = bytes * size.x * size.y * size.z > (waitsForMemory(job) ? kAllBytes : kCoreBytes);
 
   // Blocks: of gradients as tall as leaves every thread several, so that rows share what lies between rows of
   // lattice points; of cells small enough for a core's own cache.
@@ -559,6 +566,10 @@ void fillGrid(FillJob& job) {
     slices = std::max((size.z + parts - 1) / parts, std::min(size.z, 8));
   } else if (size.z < 4 * slices * threadCount()) {
     rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
+  } else {
+    // To begin a block costs as much as some hundreds of samples.
+    const int width = std::min(size.x, strip);
+    while (2 * slices * rows * width <= kBlock && size.z >= 8 * slices * threadCount()) slices *= 2;
   }
   const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
   const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0,

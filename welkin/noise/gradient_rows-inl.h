@@ -100,7 +100,7 @@ class GradientRows {
  private:
   static constexpr std::size_t kPlanesOfTerm = kMaxPlanes * kMostSlices;
   // A strip has as many points as samples and two, and vectors may reach over the last.
-  static constexpr int kSideBySide = 4, kPointValues = 3, kPointStride = kStrip + kPad;
+  static constexpr int kSideBySide = 8, kPointValues = 3, kPointStride = kStrip + kPad;
 
   // From the point below each vector's first sample to those below all of its samples.
   void makeBelow(const std::int32_t* HWY_RESTRICT cell, std::int32_t* HWY_RESTRICT below) const {
@@ -213,13 +213,14 @@ class GradientRows {
     // With two axes an evaluation costs no more than what gathering adds.
     const bool gathered = kAxes > 2 && term.x.pointHash != nullptr && gathers(term.x.step);
     float* const to = lines_ + slice * sliceStride_;
-    // Lines side by side share the loads of factors.
-    constexpr int kGathered = kSlices == 1 ? 3 : kSideBySide / kSlices, kScattered = 2 / kSlices;
+    // Lines side by side share the loads of factors, and short ones wait less for what has just been stored.
+    constexpr int kGathered = kSlices == 1 ? 3 : 2, kShort = kSideBySide / kSlices, kScattered = 2 / kSlices;
     for (int n = 0; n < made.count;) {
       const Side side{made.line + n, &rows[0][n], to};
       const int left = made.count - n;
       if (gathered)
-        n += gatherSome<kGathered>(points, t, side, left);
+        n += width_ > kNarrow ? gatherSome<kGathered>(points, t, side, left)
+                              : gatherSome<kShort>(points, t, side, left);
       else
         n += scatterSome<kScattered>(points, term.x, hash, n, side, left);
     }

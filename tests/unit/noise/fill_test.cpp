@@ -373,15 +373,17 @@ TEST(Fill, GivesEveryRowOfManyChunksWhatItHasAlone) {
 
 // Buffers larger than the caches are written past them, where rows begin at whole vectors.
 TEST(Fill, IsTheSameInBuffersLargerThanCaches) {
+  constexpr int kSlices = 56;
   for (const Kind kind : {Kind::kPerlin, Kind::kCellular})
     for (const int width : {304, 301}) {
       const Noise noise({.kind = kind, .tile = false, .frequency = {0.04, 0.05, 0.06}, .octaves = 2});
-      const Grid grid{{width, 256, 16}, glm::dvec3(1.0)};
+      const Grid grid{{width, 256, kSlices}, glm::dvec3(1.0)};
       const std::size_t slice = static_cast<std::size_t>(width) * 256;
-      std::vector<float> large(slice * 16 + 1);
+      std::vector<float> large(slice * kSlices + 1);
+      ASSERT_GT(slice * kSlices * sizeof(float), kAllBytes);
       for (const std::size_t shift : {0, 1}) {  // by a float
-        noise.fill(grid, std::span(large).subspan(shift, slice * 16));
-        for (int z = 0; z < 16; ++z) {
+        noise.fill(grid, std::span(large).subspan(shift, slice * kSlices));
+        for (int z = 0; z < kSlices; ++z) {
           const auto small = filled<float>(noise, grid, {{0, 0, z}, {width, 256, 1}});
           EXPECT_EQ(std::memcmp(small.data(), &large[shift + slice * z], slice * sizeof(float)), 0)
               << width << " " << z;
