@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One sub-frame of the whole picture: sky, discs, ground, and one march through all layers of cloud, with the thin ones among them
 // (WELKIN_SHEETS). WELKIN_TRANSMITTANCE: not a picture, but what arrives through them all. Sub-frames differ in their
-// place within the pixel and along the ray; their mean converges to the still. Alpha counts them.
+// place within the pixel and along the ray; their mean converges to the still. Alpha counts them. Beside it: the share of what is
+// behind all clouds that they hide.
 
 #include "lib/projection.glsl"
 #include "lib/phase.glsl"
@@ -49,8 +50,10 @@ uniform vec2 uJitterPx;           // of this sub-frame within the pixel
 uniform vec2 uJitterStep;         // of this sub-frame along the ray and towards the sun, [0, 1)
 
 layout(location = 0) out vec4 outColor;
+layout(location = 1) out float outHidden;
 
 void main() {
+  outHidden = 0.0;
   vec2 px = vec2(gl_FragCoord.x, uProjector.sizePx.y - gl_FragCoord.y);
   vec3 dir;
   float pixelRad;
@@ -67,6 +70,7 @@ void main() {
   outColor = vec4(vec3(groundM < 1e8 ? 0.0 : ray.transmittance), 1.0);
   return;
 #endif
+  outHidden = 1.0 - ray.transmittance;
   vec3 color = vec3(0.0);
   if (ray.transmittance > 0.0005) color = ray.transmittance * backgroundLuminance(dir, groundM, pixelRad);
 #ifdef WELKIN_SURFACES

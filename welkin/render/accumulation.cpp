@@ -11,22 +11,25 @@ namespace welkin::render {
 namespace {
 
 constexpr int kBlockPx = 4;
+constexpr float kOpaque = 0.98f;  // hides all that is behind
 constexpr int kResolveRadius = 2;
 
 // How far the luminance at (x, y) is from the line through its neighbours, relative to theirs: zero in flat
-// areas and in gradients, however steep.
+// areas and in gradients, however steep. Only pixels that are drawn count.
 float roughness(const Image<float>& sums, int x, int y) {
-  auto luminance = [&](int u, int v) {
-    const float* p = &sums.data[sums.index(u, v)];
-    return luminanceOf(p) / p[3];
-  };
+  auto weight = [&](int u, int v) { return sums.at(u, v, 3); };
+  auto luminance = [&](int u, int v) { return luminanceOf(&sums.data[sums.index(u, v)]) / weight(u, v); };
+  if (weight(x, y) == 0.0f) return 0.0f;
   const float own = 2.0f * luminance(x, y);
   float largest = 0.0f;
-  auto compare = [&](float sum) {
+  auto compare = [&](int u, int v) {
+    if (x < u || y < v || x + u >= sums.width || y + v >= sums.height) return;
+    if (weight(x - u, y - v) == 0.0f || weight(x + u, y + v) == 0.0f) return;
+    const float sum = luminance(x - u, y - v) + luminance(x + u, y + v);
     largest = std::max(largest, std::abs(sum - own) / std::max(sum + own, 1e-12f));
   };
-  if (x > 0 && x + 1 < sums.width) compare(luminance(x - 1, y) + luminance(x + 1, y));
-  if (y > 0 && y + 1 < sums.height) compare(luminance(x, y - 1) + luminance(x, y + 1));
+  compare(1, 0);
+  compare(0, 1);
   return largest;
 }
 
@@ -55,7 +58,119 @@ Image<std::uint8_t> blocksOver(int width, int height, float tolerance, float any
   return over;
 }
 
+// Means of the blocks of a half. Those cut by the border are none of them.
+class BlockMeans {
+ public:
+  explicit BlockMeans(const Image<float>& half) : means_(half.width / kBlockPx, half.height / kBlockPx, 4) {
+    parallelFor(static_cast<std::size_t>(means_.height), 4, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+        for (int x = 0; x < means_.width; ++x) {
+          float* mean = &means_.data[means_.index(x, y)];
+          for (int v = 0; v < kBlockPx; ++v)
+            for (int u = 0; u < kBlockPx; ++u) {
+              const float* p = &half.data[half.index(kBlockPx * x + u, kBlockPx * y + v)];
+              for (int c = 0; c < 4; ++c) mean[c] += p[c] / (kBlockPx * kBlockPx);
+            }
+        }
+    });
+  }
+
+  int width() const { return means_.width; }
+  int height() const { return means_.height; }
+  // Whether a block has drawn ones on all sides, and next to these.
+  bool surrounded(int x, int y) const {
+    if (x < 3 || y < 3 || x + 3 >= width() || y + 3 >= height()) return false;
+    for (const int d : {-3, -1, 1, 3})
+      if (at(x + d, y)[3] == 0.0f || at(x, y + d)[3] == 0.0f) return false;
+    return true;
+  }
+  const float* at(int x, int y) const { return &means_.data[means_.index(x, y)]; }
+
+  // A channel's value in the middle of a block by the line through those beside it, and by the curve through
+  // four.
+  struct Guess {
+    float line, curve;
+  };
+  template <class ValueAt>  // by distance along an axis
+  static Guess guess(const ValueAt& at) {
+    const float near = at(-1) + at(1);
+    return {0.5f * near, (9.0f * near - at(-3) - at(3)) / 16.0f};
+  }
+
+ private:
+  Image<float> means_;
+};
+
 }  // namespace
+
+Image<std::uint8_t> firstHalf(int width, int height) {
+  Image<std::uint8_t> half(width, height, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) half.at(x, y) = (x / kBlockPx + y / kBlockPx) % 2 == 0 ? 1 : 0;
+  return half;
+}
+
+Image<std::uint8_t> secondHalf(const Image<float>& half, const Image<float>& hidden, float tolerance) {
+  const BlockMeans means(half);
+  Image<std::uint8_t> wanted(half.width, half.height, 1);
+  const Image<std::uint8_t> rough = roughBlocks(half, tolerance);
+  const auto plain = [&](int x, int y) {
+    if (rough.at(kBlockPx * x, kBlockPx * y) == 1) return false;
+    for (int v = 0; v < kBlockPx; ++v)
+      for (int u = 0; u < kBlockPx; ++u)
+        if (hidden.at(kBlockPx * x + u, kBlockPx * y + v) < kOpaque) return false;
+    return true;
+  };
+  const auto canBeTold = [&](int x, int y) {
+    if (!means.surrounded(x, y)) return false;
+    if (!plain(x - 1, y) || !plain(x + 1, y) || !plain(x, y - 1) || !plain(x, y + 1)) return false;
+    const auto [a, b] = BlockMeans::guess([&](int d) { return luminanceOf(means.at(x + d, y)); });
+    const auto [c, e] = BlockMeans::guess([&](int d) { return luminanceOf(means.at(x, y + d)); });
+    const auto [least, most] = std::minmax({a, b, c, e});
+    return most - least <= 2.0f * tolerance * std::max(least, 0.0f);
+  };
+  const int down = (half.height + kBlockPx - 1) / kBlockPx, across = (half.width + kBlockPx - 1) / kBlockPx;
+  parallelFor(static_cast<std::size_t>(down), 4, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < across; ++x) {
+        const bool drawn = half.at(kBlockPx * x, kBlockPx * y, 3) > 0.0f;
+        if (drawn || canBeTold(x, y)) continue;
+        for (int v = kBlockPx * y; v < std::min(kBlockPx * (y + 1), half.height); ++v)
+          for (int u = kBlockPx * x; u < std::min(kBlockPx * (x + 1), half.width); ++u) wanted.at(u, v) = 1;
+      }
+  });
+  return wanted;
+}
+
+Image<std::uint8_t> fillBlocks(Image<float>& first) {
+  const BlockMeans means(first);
+  Image<std::uint8_t> filled(first.width, first.height, 1);
+  parallelFor(static_cast<std::size_t>(means.height()), 4, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < means.width(); ++x) {
+        if (means.at(x, y)[3] > 0.0f) continue;
+        for (int c = 0; c < 3; ++c) {
+          const auto along = [&](int d) { return means.at(x + d, y)[c]; };
+          const auto across = [&](int d) { return means.at(x, y + d)[c]; };
+          const float middle = 0.5f * (BlockMeans::guess(along).curve + BlockMeans::guess(across).curve);
+          const float slopeX = (along(1) - along(-1)) / (2 * kBlockPx),
+                      slopeY = (across(1) - across(-1)) / (2 * kBlockPx);
+          for (int v = 0; v < kBlockPx; ++v)
+            for (int u = 0; u < kBlockPx; ++u) {
+              const float dx = static_cast<float>(u) - 0.5f * (kBlockPx - 1),
+                          dy = static_cast<float>(v) - 0.5f * (kBlockPx - 1);
+              first.at(kBlockPx * x + u, kBlockPx * y + v, c) = middle + slopeX * dx + slopeY * dy;
+            }
+        }
+        for (int v = 0; v < kBlockPx; ++v)
+          for (int u = 0; u < kBlockPx; ++u) {
+            first.at(kBlockPx * x + u, kBlockPx * y + v, 3) = 1.0f;
+            filled.at(kBlockPx * x + u, kBlockPx * y + v) = 1;
+          }
+      }
+  });
+  return filled;
+}
 
 Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance) {
   return blocksOver(first.width, first.height, tolerance, 4.0f,

@@ -8,6 +8,20 @@
 
 namespace welkin::render {
 
+// The first sub-frame goes in two halves, the squares of a chessboard of blocks, four by four pixels: most of
+// the second need not be drawn inside an overcast or a large cloud. Masks are 1 where pixels are to be drawn
+// and 0 elsewhere, one channel, top row first.
+Image<std::uint8_t> firstHalf(int width, int height);
+// The blocks of the second half that those around them do not tell: all but those with blocks on all four
+// sides that are not rough and where clouds hide what is behind them, and where four guesses of the luminance
+// lie within twice `tolerance` of each other: lines through the blocks on two sides, curves through these and
+// the next ones, both along either axis. half: what is drawn, RGBA with its weight in alpha, 0 elsewhere;
+// hidden: the share of what is behind that clouds hide.
+Image<std::uint8_t> secondHalf(const Image<float>& half, const Image<float>& hidden, float tolerance);
+// Gives the blocks that have not been drawn what those around them tell, with weight 1. Returns which they
+// are, as a mask.
+Image<std::uint8_t> fillBlocks(Image<float>& first);
+
 // Pixels of the blocks, four by four, that one sub-frame does not settle: 1, the others 0, one channel, top
 // row first. There luminance leaves the line between its neighbours by more than `tolerance` in the mean or
 // four times that anywhere, relative to itself. Edges, fine forms and dither are rough; clear sky, haze and

@@ -43,6 +43,15 @@ std::vector<gpu::Tile> rowBands(int width, int height) {
   return bands;
 }
 
+bool isAny(const Image<std::uint8_t>& mask) {
+  return std::ranges::find(mask.data, 1) != mask.data.end();
+}
+// In both masks.
+Image<std::uint8_t> bothOf(Image<std::uint8_t> a, const Image<std::uint8_t>& b) {
+  for (std::size_t i = 0; i < a.data.size(); ++i) a.data[i] &= b.data[i];
+  return a;
+}
+
 float pixelRadOf(const scene::SkyState& state) {
   return scene::middlePixelRad(scene::projectorOf(state));
 }
@@ -65,7 +74,7 @@ struct SkyRenderer::Impl {
   shading::BallVolume balls;         // metaballs in the place of splats
   std::optional<SkyBoxTexture> box;  // in the place of the clear sky
   std::optional<FlarePass> flare;
-  gpu::Texture2D sum;  // of sub-frames
+  gpu::Texture2D sum, hidden;  // of sub-frames
 
   void updateBox(const scene::SkyBox& wanted);
   Picture draw(const scene::SkyState& state, const Progress& progress);
@@ -180,40 +189,69 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   bind(p, state);
   done("compile");
 
-  if (sum.width() != width || sum.height() != height)
+  if (sum.width() != width || sum.height() != height) {
     sum = gpu::Texture2D(width, height, {.format = gpu::Format::kRgba32F});
+    hidden = gpu::Texture2D(width, height, {.format = gpu::Format::kR16F});
+  }
   gpu::Framebuffer target(sum);
-  target.clear();
-  // The first sub-frame has a mask, too: software rasterisers compile a program anew for draws without one.
-  Image<std::uint8_t> everywhere(width, height, 1);
-  std::ranges::fill(everywhere.data, 1);
-  target.setMask(everywhere);
-  // Sums of sub-frames, with their number in alpha. The first covers the picture, the others what it shows to
-  // be rough; whenever their number has doubled, what they agree on is done.
-  Image<float> before;
+  target.attach(1, hidden);
+  target.clear(0);
+  target.clear(1);
   const std::vector<gpu::Tile> rows = rowBands(width, height);
-  for (int i = 0; i < settings.subframes; ++i) {
-    p.set("uJitterPx", jitterPx(i));
-    p.set("uJitterStep", jitterStep(i));
+  const auto draw = [&](int subframe, const Image<std::uint8_t>& where) {
+    target.setMask(where);
+    p.set("uJitterPx", jitterPx(subframe));
+    p.set("uJitterStep", jitterStep(subframe));
     for (std::size_t r = 0; r < rows.size(); ++r) {
       triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = 1});
       if (!progress) continue;
       gpu::finish();  // so that progress is true and Ctrl-C is heard
-      progress((i + static_cast<double>(r + 1) / static_cast<double>(rows.size())) / settings.subframes);
+      progress((subframe + static_cast<double>(r + 1) / static_cast<double>(rows.size())) /
+               settings.subframes);
     }
+  };
+  // Sums of sub-frames, with their number in alpha. The first covers the picture, but for what is told from
+  // around it; the others cover what it shows to be rough; whenever their number has doubled, what they agree
+  // on is done. The first has a mask, too: software rasterisers compile a program anew for draws without one.
+  Image<float> before;
+  Image<std::uint8_t> wanted;
+  if (layout.bands.empty()) {
+    Image<std::uint8_t> everywhere(width, height, 1);
+    std::ranges::fill(everywhere.data, 1);
+    draw(0, everywhere);
+    before = target.readPicture();
+    wanted = roughBlocks(before, settings.tolerance);
+  } else {
+    draw(0, firstHalf(width, height));
+    Image<std::uint8_t> needed =
+        secondHalf(target.readPicture(), target.readPicture(1, 1), settings.tolerance);
+    do {
+      draw(0, needed);
+      before = target.readPicture();
+      const Image<std::uint8_t> filled = fillBlocks(before);
+      wanted = roughBlocks(before, settings.tolerance);
+      needed = bothOf(filled, wanted);
+    } while (isAny(needed));
+  }
+  const Image<float> first = before;
+  const auto sums = [&] {
+    Image<float> now = target.readPicture();
+    for (std::size_t i = 0; i < now.data.size(); i += 4)
+      if (now.data[i + 3] == 0.0f) std::ranges::copy_n(&first.data[i], 4, &now.data[i]);
+    return now;
+  };
+  for (int i = 1; i < settings.subframes && isAny(wanted); ++i) {
+    draw(i, wanted);
     const bool doubled = std::has_single_bit(static_cast<unsigned>(i + 1));
     if (!doubled || i + 1 == settings.subframes) continue;
-    Image<float> now = target.readPicture();
-    const Image<std::uint8_t> wanted =
-        i == 0 ? roughBlocks(now, settings.tolerance) : unsettledBlocks(before, now, settings.tolerance);
-    if (std::ranges::count(wanted.data, 1) == 0) break;
-    target.setMask(wanted);
+    Image<float> now = sums();
+    wanted = unsettledBlocks(before, now, settings.tolerance);
     before = std::move(now);
   }
   if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
   done("march");
 
-  picture.luminance = resolve(target.readPicture(), settings.noise);
+  picture.luminance = resolve(sums(), settings.noise);
   if (state.scene.output.flare > 0.0) {
     addFlare(state, layout, picture.luminance);
     done("flare");

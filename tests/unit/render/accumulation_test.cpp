@@ -23,6 +23,69 @@ int count(const Image<std::uint8_t>& blocks) {
   return static_cast<int>(std::ranges::count(blocks.data, 1));
 }
 
+// What the first half has of a picture.
+Image<float> halfOf(Image<float> picture) {
+  const auto drawn = firstHalf(picture.width, picture.height);
+  for (std::size_t i = 0; i < picture.data.size(); ++i)
+    if (drawn.data[i / 4] == 0) picture.data[i] = 0.0f;
+  return picture;
+}
+// The share of what is behind that clouds hide, everywhere but in one block.
+Image<float> hidden(int width, int height, float share, int blockX = -1, int blockY = -1) {
+  Image<float> image(width, height, 1);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) image.at(x, y) = x / 4 == blockX && y / 4 == blockY ? 0.9f : share;
+  return image;
+}
+
+TEST(FirstHalf, IsAChessboardOfBlocks) {
+  const auto half = firstHalf(30, 21);
+  for (int y = 0; y < 21; ++y)
+    for (int x = 0; x < 30; ++x) EXPECT_EQ(half.at(x, y), (x / 4 + y / 4) % 2 == 0 ? 1 : 0);
+}
+
+// All but the second half of the inner 9 x 9 of 15 x 15 blocks, whose neighbours' neighbours are in the
+// picture.
+TEST(SecondHalf, LeavesOutWhatIsTold) {
+  constexpr int kTold = 40 * 16, kSecond = 112 * 16;
+  const auto half = halfOf(grey(60, 60, [](int x, int y) { return 30.0f + 0.2f * x - 0.1f * y; }));
+  EXPECT_EQ(count(secondHalf(half, hidden(60, 60, 1.0f), 0.01f)), kSecond - kTold);
+  // Stars might be seen there, or an edge.
+  EXPECT_EQ(count(secondHalf(half, hidden(60, 60, 0.9f), 0.01f)), kSecond);
+  EXPECT_EQ(count(secondHalf(half, hidden(60, 60, 1.0f, 7, 7), 0.01f)), kSecond - kTold + 4 * 16);
+}
+
+TEST(SecondHalf, DrawsWhereGuessesDiffer) {
+  const auto wanted = [](const std::function<float(int, int)>& luminance) {
+    return secondHalf(halfOf(grey(60, 60, luminance)), hidden(60, 60, 1.0f), 0.01f);
+  };
+  const auto ridge = wanted([](int x, int) { return 1.0f - 0.002f * (x - 30) * (x - 30); });
+  EXPECT_EQ(ridge.at(4 * 7, 4 * 6), 1);
+  const auto edge = wanted([](int x, int) { return x < 28 ? 1.0f : 1.1f; });
+  EXPECT_EQ(edge.at(4 * 6, 4 * 7), 1);   // at its foot
+  EXPECT_EQ(edge.at(4 * 10, 4 * 7), 0);  // away from it
+  // One that goes straight through a block, which all guesses call a slope, is seen above and below it.
+  EXPECT_EQ(wanted([](int x, int) { return x < 30 ? 1.0f : 1.1f; }).at(4 * 7, 4 * 6), 1);
+}
+
+TEST(FillBlocks, GivesWhatThoseAroundTell) {
+  const auto plane = [](int x, int y) { return 30.0f + 0.2f * x - 0.1f * y; };
+  Image<float> first = halfOf(grey(60, 60, plane));
+  const auto needed = secondHalf(first, hidden(60, 60, 1.0f), 0.01f);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x)
+      if (needed.at(x, y) == 1)
+        std::ranges::fill_n(&first.data[first.index(x, y)], 3, plane(x, y)), first.at(x, y, 3) = 1.0f;
+  const auto filled = fillBlocks(first);
+  EXPECT_EQ(count(filled), 40 * 16);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) {
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(first.at(x, y, c), plane(x, y), 1e-4f) << x << ", " << y;
+      EXPECT_EQ(first.at(x, y, 3), 1.0f);
+      EXPECT_FALSE(needed.at(x, y) == 1 && filled.at(x, y) == 1);
+    }
+}
+
 TEST(RoughBlocks, FlatAreasAndGradientsAreSettled) {
   EXPECT_EQ(count(roughBlocks(grey(100, 70, [](int, int) { return 3.0f; }), 0.01f)), 0);
   EXPECT_EQ(
