@@ -26,14 +26,19 @@ struct Pixel {
   double mean, variance;  // of a path
 };
 
-Pixel trace(const reference::SkyTracer& tracer, int x, int y, double& events) {
+struct Events {
+  double ofPaths = 0.0, chained = 0.0;
+};
+
+Pixel trace(const reference::SkyTracer& tracer, int x, int y, Events& events) {
   double sum = 0.0, squares = 0.0;
   for (std::uint64_t k = 0; k < kTracerPaths; ++k) {
     const reference::SkySample s = tracer.trace(x, y, k);
     const double l = luminanceOf(&s.luminance.x);
     sum += l;
     squares += l * l;
-    events += s.events;
+    events.ofPaths += s.events;
+    events.chained += s.chained;
   }
   constexpr double n = kTracerPaths;
   return {sum / n, std::max(squares / n - sum * sum / (n * n), 0.0) * n / (n - 1.0)};
@@ -46,7 +51,7 @@ TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
 
   TracerRow row;
   std::vector<Pixel> pixels;
-  double events = 0.0;
+  Events events;
   const double begin = processorS();
   for (int i = 0; i < count; i += kPixelStride) pixels.push_back(trace(tracer, i % width, i / width, events));
   const double middle = processorS();
@@ -54,7 +59,6 @@ TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
   const double seconds = processorS() - middle;
   row.boundsS = std::max(middle - begin - seconds, 0.0);
   const double paths = static_cast<double>(pixels.size()) * kTracerPaths;
-  events *= 0.5;
 
   const auto n = static_cast<double>(pixels.size());
   double variance = 0.0;
@@ -66,7 +70,9 @@ TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
   for (const Pixel& p : pixels)
     row.deviation += std::sqrt(p.variance) / std::max(p.mean, kDarkest * row.mean) / n;
   row.pathsPerS = paths / seconds;
-  row.eventsPerS = events / seconds;
+  constexpr double kTimes = 2.0;
+  row.eventsPerS = events.ofPaths / kTimes / seconds;
+  row.allEventsPerS = (events.ofPaths + events.chained) / kTimes / seconds;
   constexpr double kPixels = 320.0 * 180.0, kNoise = 0.02;
   row.hoursTo2Percent =
       kPixels * (row.deviation * row.deviation) / (kNoise * kNoise) / row.pathsPerS / 3600.0;

@@ -14,10 +14,11 @@ namespace welkin::bench {
 // on the way, which a long picture does once; the second time is measured.
 struct TracerRow {
   std::string scene;
-  double pathsPerS = 0.0;  // of processor time
-  double eventsPerS = 0.0;
-  double boundsS = 0.0;    // what the first time took longer
-  double deviation = 0.0;  // of a path, relative to its pixel's mean: mean over pixels
+  double pathsPerS = 0.0;      // of processor time
+  double eventsPerS = 0.0;     // of paths from the eye
+  double allEventsPerS = 0.0;  // with those on chains from sun and moon
+  double boundsS = 0.0;        // what the first time took longer
+  double deviation = 0.0;      // of a path, relative to its pixel's mean: mean over pixels
   // Processor time, hours, until pixels of 320 x 180 are within 2 % in the mean: what becomes better only
   // where speed is not bought by noise.
   double hoursTo2Percent = 0.0;

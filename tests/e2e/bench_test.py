@@ -36,6 +36,7 @@ class Truth(ProgramTest):
         self.assertEqual(scene["scene"], "stratus_overcast")
         # Light is scattered many times under an overcast, and paths differ.
         self.assertGreater(scene["scatterings_per_s"], 10 * scene["paths_per_s"])
+        self.assertGreater(scene["scatterings_with_chains_per_s"], scene["scatterings_per_s"])
         self.assertGreater(scene["deviation"], 0.5)
         hours = 320 * 180 * (scene["deviation"] / 0.02) ** 2 / scene["paths_per_s"] / 3600
         self.assertAlmostEqual(scene["hours_to_2_percent"] / hours, 1.0, places=3)

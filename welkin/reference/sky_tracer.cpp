@@ -291,6 +291,7 @@ void SkyTracer::Impl::gatherByPeaks(const Path& path, const glm::dvec3& p, const
     const Ray ray{at, chain.ways[--chain.count]};
     const auto collision = collide(ray, random);
     if (!collision || collision->phase != &droplets) return;  // no others have that peak
+    ++work.sample.chained;
     lit *= collision->albedo * throughAir(ray, collision->t);
     at = ray.at(collision->t);
   }

@@ -28,6 +28,7 @@ struct SkySample {
   glm::dvec3 luminance{0.0};  // cd/m2, linear Rec. 709
   bool cloud = false;        // the straight way from the eye ends in a cloud: the mean is the clouds' opacity
   std::uint32_t events = 0;  // scatterings, and reflections of the ground
+  std::uint32_t chained = 0;  // scatterings besides, on chains of light from sun or moon
 };
 
 class SkyTracer {

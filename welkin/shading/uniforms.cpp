@@ -180,7 +180,7 @@ MarchSettings marchSettings(scene::Quality quality) {
               .stepNearM = 42.0f,
               .stepShare = 0.0115f,
               .maxSteps = 240,
-              .sunSamples = 2};
+              .sunSamples = 3};
     case scene::Quality::kHigh:
       return {.subframes = 16,
               .tolerance = 0.005f,
