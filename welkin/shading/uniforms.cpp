@@ -175,7 +175,7 @@ MarchSettings marchSettings(scene::Quality quality) {
               .sunSamples = 2};
     case scene::Quality::kMedium:
       return {.subframes = 4,
-              .tolerance = 0.016f,
+              .tolerance = 0.02f,
               .noise = 0.04f,
               .stepNearM = 42.0f,
               .stepShare = 0.0115f,
