@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <optional>
 
 #include "welkin/core/error.h"
@@ -198,7 +199,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   target.clear(0);
   target.clear(1);
   const std::vector<gpu::Tile> rows = rowBands(width, height);
-  const auto draw = [&](int subframe, const Image<std::uint8_t>& where) {
+  // begin, end: of all sub-frames, for the progress.
+  const auto draw = [&](int subframe, const Image<std::uint8_t>& where, double begin, double end) {
     target.setMask(where);
     p.set("uJitterPx", jitterPx(subframe));
     p.set("uJitterStep", jitterStep(subframe));
@@ -206,8 +208,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
       triangle.draw(p, target, {.tile = rows[r], .blend = gpu::Blend::kAdd, .where = 1});
       if (!progress) continue;
       gpu::finish();  // so that progress is true and Ctrl-C is heard
-      progress((subframe + static_cast<double>(r + 1) / static_cast<double>(rows.size())) /
-               settings.subframes);
+      const double share = static_cast<double>(r + 1) / static_cast<double>(rows.size());
+      progress(std::lerp(begin, end, share) / settings.subframes);
     }
   };
   // Sums of sub-frames, with their number in alpha. The first covers the picture, but for what is told from
@@ -218,30 +220,32 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   if (layout.bands.empty()) {
     Image<std::uint8_t> everywhere(width, height, 1);
     std::ranges::fill(everywhere.data, 1);
-    draw(0, everywhere);
+    draw(0, everywhere, 0.0, 1.0);
     before = target.readPicture();
     wanted = roughBlocks(before, settings.tolerance);
   } else {
-    draw(0, firstHalf(width, height));
+    double begin = 0.5;
+    draw(0, firstHalf(width, height), 0.0, begin);
     Image<std::uint8_t> needed =
         secondHalf(target.readPicture(), target.readPicture(1, 1), settings.tolerance);
     do {
-      draw(0, needed);
+      draw(0, needed, begin, 1.0);
+      begin = 1.0;
       before = target.readPicture();
       const Image<std::uint8_t> filled = fillBlocks(before);
       wanted = roughBlocks(before, settings.tolerance);
       needed = bothOf(filled, wanted);
     } while (isAny(needed));
   }
-  const Image<float> first = before;
+  // What has not been drawn stays as it was told.
   const auto sums = [&] {
     Image<float> now = target.readPicture();
     for (std::size_t i = 0; i < now.data.size(); i += 4)
-      if (now.data[i + 3] == 0.0f) std::ranges::copy_n(&first.data[i], 4, &now.data[i]);
+      if (now.data[i + 3] == 0.0f) std::ranges::copy_n(&before.data[i], 4, &now.data[i]);
     return now;
   };
   for (int i = 1; i < settings.subframes && isAny(wanted); ++i) {
-    draw(i, wanted);
+    draw(i, wanted, i, i + 1.0);
     const bool doubled = std::has_single_bit(static_cast<unsigned>(i + 1));
     if (!doubled || i + 1 == settings.subframes) continue;
     Image<float> now = sums();

@@ -224,13 +224,16 @@ TEST_F(Sky, NoGrainAtMedium) {
 }
 
 TEST_F(Sky, ProgressGrowsToOneAndCanStopTheDrawing) {
+  const scene::Scene overcast = sized(cloudyScene(45.0, {Genus::kStratus}, 8.0), 96, 64);
+  for (const scene::Scene& s : {overcast, clearScene(45.0)}) {
+    double last = 0.0;
+    renderer().draw(scene::buildSky(s, 0.0), [&](double fraction) {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+    });
+    EXPECT_DOUBLE_EQ(last, 1.0);
+  }
   const scene::SkyState state = scene::buildSky(clearScene(45.0), 0.0);
-  double last = 0.0;
-  renderer().draw(state, [&](double fraction) {
-    EXPECT_GE(fraction, last);
-    last = fraction;
-  });
-  EXPECT_DOUBLE_EQ(last, 1.0);
   struct Stop {};
   EXPECT_THROW(renderer().draw(state,
                                [](double fraction) {
