@@ -55,6 +55,7 @@ TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
   const double begin = processorS();
   for (int i = 0; i < count; i += kPixelStride) pixels.push_back(trace(tracer, i % width, i / width, events));
   const double middle = processorS();
+  events = {};
   for (int i = 0; i < count; i += kPixelStride) trace(tracer, i % width, i / width, events);
   const double seconds = processorS() - middle;
   row.boundsS = std::max(middle - begin - seconds, 0.0);
@@ -70,9 +71,8 @@ TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
   for (const Pixel& p : pixels)
     row.deviation += std::sqrt(p.variance) / std::max(p.mean, kDarkest * row.mean) / n;
   row.pathsPerS = paths / seconds;
-  constexpr double kTimes = 2.0;
-  row.eventsPerS = events.ofPaths / kTimes / seconds;
-  row.allEventsPerS = (events.ofPaths + events.chained) / kTimes / seconds;
+  row.eventsPerS = events.ofPaths / seconds;
+  row.allEventsPerS = (events.ofPaths + events.chained) / seconds;
   constexpr double kPixels = 320.0 * 180.0, kNoise = 0.02;
   row.hoursTo2Percent =
       kPixels * (row.deviation * row.deviation) / (kNoise * kNoise) / row.pathsPerS / 3600.0;

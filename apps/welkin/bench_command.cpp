@@ -175,9 +175,9 @@ Json tracerJson(const BenchArgs& args) {
         "bounds of the density take once\n\n",
         bench::kTracerPaths);
     fmt::print(
-        "| scene | paths a second | scatterings a second | with chains | deviation of a path | hours to 2 % "
-        "at 320x180 | "
-        "bounds, s | luminance, cd/m2 |\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
+        "| scene | paths a second | scatterings a second | with chains | deviation of a path "
+        "| hours to 2 % at 320x180 | bounds, s | luminance, cd/m2 "
+        "|\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
   }
   for (const bench::TracerRow& r : rows) {
     if (!args.json)

@@ -493,8 +493,8 @@ void fillGrid(FillJob& job) {
     rows = std::max(64, size.y / (4 * threadCount()) / kMostChunk * kMostChunk);
   } else {
     // To begin a block costs as much as some hundreds of samples.
-    const int width = std::min(size.x, strip);
-    while (2 * slices * rows * width <= kBlock && size.z >= 8 * slices * threadCount()) slices *= 2;
+    const std::int64_t slice = static_cast<std::int64_t>(rows) * std::min(size.x, strip);
+    while (2 * slices * slice <= kBlock && size.z >= 8 * slices * threadCount()) slices *= 2;
   }
   const auto parts = [](int count, int part, int lead) { return (count + lead + part - 1) / part; };
   const int leadX = cells ? job.lead[0] : 0, leadY = cells ? job.lead[1] : 0,
