@@ -89,6 +89,14 @@ Habit habitOf(weather::Genus genus, double depthM) {
   return mixed(habit, kCongestus, std::clamp((depthM - kMediocrisM) / (kCongestusM - kMediocrisM), 0.0, 1.0));
 }
 
+// How much farther apart cumulus stand than at half cover. They are as broad then as they are deep, where few in
+// the same pattern would be its peaks alone, slender and pointed.
+double spacingOf(const weather::Layer& layer) {
+  constexpr double kHalf = 4.0, kFewest = 1.0, kPower = 0.8;
+  if (layer.genus != weather::Genus::kCumulus) return 1.0;
+  return std::pow(kHalf / std::clamp(layer.oktas, kFewest, kHalf), kPower);
+}
+
 }  // namespace
 
 bool isIce(weather::Genus genus) {
@@ -110,7 +118,8 @@ double dropletDiameterUm(const weather::Weather& weather) {
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter) {
   const double depth = layer.topM - layer.baseM;
   const Habit habit = habitOf(layer.genus, depth);
-  const double cell = std::clamp(habit.cell * depth, habit.cellMinM, habit.cellMaxM);
+  const double spacing = spacingOf(layer);
+  const double cell = spacing * std::clamp(habit.cell * depth, habit.cellMinM, habit.cellMaxM);
   const double blob = std::clamp(habit.blob * depth, habit.blobMinM, habit.blobMaxM);
   const double weights =
       std::sqrt(habit.cellWeight * habit.cellWeight + habit.fractalWeight * habit.fractalWeight +
@@ -134,7 +143,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.cellWeight = static_cast<float>(habit.cellWeight / weights);
   s.fractalWeight = static_cast<float>(habit.fractalWeight / weights);
   s.patchWeight = static_cast<float>(habit.patchWeight / weights);
-  s.patchM = static_cast<float>(6.0 * habit.patchM);
+  s.patchM = static_cast<float>(6.0 * spacing * habit.patchM);
   s.warpM = static_cast<float>(habit.warp * cell);
   s.dome = static_cast<float>(habit.dome + habit.domeFull * std::clamp((layer.oktas - 4.0) / 4.0, 0.0, 1.0));
   s.domePower = static_cast<float>(habit.domePower);
@@ -155,7 +164,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
       glm::vec3(-0.06 * layer.windSpeedMps * secondsAfter, 0.0, habit.riseMps * secondsAfter + offsetZ);
   s.detailShiftM =
       glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
-  s.edge = static_cast<float>(habit.edge);
+  s.edge = static_cast<float>(habit.edge / spacing);  // as deep in metres
   s.lift = static_cast<float>(habit.lift);
   // The steepest: tops, and the underside of an anvil.
   const double atTop = depth / std::max(4.0, s.dome * habit.domePower);

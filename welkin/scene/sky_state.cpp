@@ -38,10 +38,10 @@ constexpr double kDiffuseMu = 2.0 / 3.0;
 // Of broken cloud light leaves downwards through the sides: what it sends back is less by a power of the
 // clouds' share of the plane, that grows with how tall they are for their width, and with the sun's height.
 // Fitted to the light of sky and clouds on the ground under skies of the reference renderer (cumulus of 2 to
-// 6 oktas, congestus of 3, stratocumulus of 3 to 7, each under suns of 15 to 66 degrees, four or eight skies
-// each): it agrees within a tenth, RMS. Out of clouds so thick as thunderclouds little comes but on the side
+// 6 oktas, congestus of 3, stratocumulus of 3 to 7, each under suns of 15 to 66 degrees, four to twelve skies
+// each): it agrees within 11 %, RMS. Out of clouds so thick as thunderclouds little comes but on the side
 // where it went in.
-constexpr double kLeaks = 2.0, kTallCells = 0.6, kLeaksUpTo = 16.0;
+constexpr double kLeaks = 2.2, kTallCells = 0.6, kLeaksUpTo = 10.0;
 
 // How many more cells a slanting ray comes by than an upright one. tangent: of its zenith angle; cells: how
 // deep a layer is for the distance of its clouds.

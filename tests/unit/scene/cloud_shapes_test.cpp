@@ -170,6 +170,17 @@ TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
   EXPECT_LT(towers.carried(0.8, 0.55), 0.92);
 }
 
+// In one pattern the peaks alone would be left of few: the slenderer and the more pointed, the fewer there are.
+TEST(CloudShapes, FewHeapsAreAsBroadAsMany) {
+  const Shape many(Genus::kCumulus, 600.0, 4.0);
+  for (const double oktas : {1.0, 2.0}) {
+    SCOPED_TRACE(oktas);
+    const Shape few(Genus::kCumulus, 600.0, oktas);
+    EXPECT_GT(few.levelM(), 0.85 * many.levelM());
+    EXPECT_GT(few.levelM(), 1.15 * few.uprightM());
+  }
+}
+
 // Strained cells would be bands with plane walls.
 TEST(CloudShapes, HeapsAreHardlyStrained) {
   for (const double depthM : {400.0, 1200.0, 4000.0})
