@@ -80,6 +80,11 @@ void ForeignEngine::restore() const {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 12);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+  for (const GLenum unit : {GL_TEXTURE16, GL_TEXTURE17, GL_TEXTURE18, GL_TEXTURE20}) {
+    glActiveTexture(unit);
+    glBindTexture(GL_TEXTURE_2D, o.plane);
+    glBindTexture(GL_TEXTURE_3D, o.volume);
+  }
   glActiveTexture(GL_TEXTURE3);
   glBindTexture(GL_TEXTURE_2D, o.plane);
   glBindTexture(GL_TEXTURE_3D, o.volume);
@@ -134,7 +139,7 @@ std::map<std::string, std::string> ForeignEngine::state() const {
     state["switch " + std::to_string(name)] = glIsEnabled(name) ? "on" : "off";
   GLint active = 0;
   glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
-  for (GLenum i = 0; i < 16; ++i) {
+  for (GLenum i = 0; i < 32; ++i) {
     glActiveTexture(GL_TEXTURE0 + i);
     const std::string unit = "unit " + std::to_string(i);
     ask((unit + " 2D").c_str(), GL_TEXTURE_BINDING_2D, 1);

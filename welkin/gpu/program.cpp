@@ -11,6 +11,7 @@
 
 #include "welkin/core/error.h"
 #include "welkin/gpu/gl_format.h"
+#include "welkin/gpu/state_guard.h"
 
 namespace welkin::gpu {
 namespace {
@@ -172,6 +173,8 @@ void Program::collectUniforms() {
     if (isSampler(type)) {
       // Each sampler has a unit of its own for good: two kinds of sampler on one unit are an error in GL.
       uniform.unit = nextUnit++;
+      if (uniform.unit >= StateGuard::kUnits)
+        throw GpuError("a program has more than " + std::to_string(StateGuard::kUnits - 1) + " textures");
       glUniform1i(uniform.location, uniform.unit);
     }
     if (name.ends_with("[0]")) name.resize(name.size() - 3);

@@ -9,17 +9,18 @@ namespace welkin::gpu {
 // While it lives the context is in the state that this folder's draws expect, that of a fresh context but for
 // cube maps, which are filtered across their edges. When it goes, everything that these draws change is as it
 // was: program, vertex array, buffers, framebuffers, viewport, scissor, blending, depth, stencil, culling,
-// colour mask, texture units 0 to 15 with their samplers, image units 0 and 1 where there are any, pixel
-// storage. The context must stay current. Allocates nothing.
+// colour mask, texture units 0 to kUnits - 1 with their samplers, image units 0 and 1 where there are any,
+// pixel storage. The context must stay current. Allocates nothing.
 class StateGuard {
  public:
+  static constexpr int kUnits = 32;  // that programs may have; OpenGL 3.3 has 48 at least
+
   StateGuard();
   ~StateGuard();
   StateGuard(const StateGuard&) = delete;
   StateGuard& operator=(const StateGuard&) = delete;
 
  private:
-  static constexpr int kUnits = 16;
   struct Unit {
     int texture2D, texture3D, textureCube, sampler;
   };
