@@ -2,22 +2,44 @@
 #include "welkin/shading/fluence_layout.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <functional>
 
 namespace welkin::shading {
+namespace {
+
+using Bands = std::vector<LightVolumeLayout::Band>;
+
+bool touches(const Bands& bands, std::size_t b) {
+  return b + 1 < bands.size() && bands[b].topM == bands[b + 1].baseM;
+}
+
+// Above which bands there is a cell of air: where the next begins higher up. Of more than there is room for
+// beside a cell for each band, the widest have one.
+std::vector<bool> cellsOfAir(const Bands& bands) {
+  std::vector<std::size_t> gaps;
+  for (std::size_t b = 0; b + 1 < bands.size(); ++b)
+    if (!touches(bands, b)) gaps.push_back(b);
+  std::ranges::stable_sort(gaps, std::greater(),
+                           [&](std::size_t b) { return bands[b + 1].baseM - bands[b].topM; });
+  constexpr std::size_t kMost = FluenceLayout::kMostCells;
+  assert(bands.size() <= kMost);
+  gaps.resize(std::min(gaps.size(), kMost - bands.size()));
+  std::vector<bool> air(bands.size(), false);
+  for (const std::size_t b : gaps) air[b] = true;
+  return air;
+}
+
+}  // namespace
 
 FluenceLayout fluenceLayout(const LightVolumeLayout& volume) {
   FluenceLayout layout;
   layout.columns = volume.columns / 2;
-  const auto& bands = volume.bands;
-  const auto touches = [&](std::size_t b) {
-    return b + 1 < bands.size() && bands[b].topM == bands[b + 1].baseM;
-  };
-  int most = FluenceLayout::kMostCells, spans = 0;
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    spans += bands[b].lastSlice - bands[b].firstSlice;
-    if (b + 1 < bands.size() && !touches(b)) --most;
-  }
+  const Bands& bands = volume.bands;
+  const std::vector<bool> air = cellsOfAir(bands);
+  int most = FluenceLayout::kMostCells - static_cast<int>(std::ranges::count(air, true)), spans = 0;
+  for (const LightVolumeLayout::Band& band : bands) spans += band.lastSlice - band.firstSlice;
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const auto& band = bands[b];
     const int own = band.lastSlice - band.firstSlice;
@@ -35,9 +57,9 @@ FluenceLayout fluenceLayout(const LightVolumeLayout& volume) {
       layout.cells.emplace_back(slice(i), slice(i + 1), (band.topM - band.baseM) / static_cast<float>(count),
                                 0.0f);
     const float end = first + static_cast<float>(count);
-    layout.bands.emplace_back(first, end, b > 0 && touches(b - 1) ? first : first + 0.5f,
-                              touches(b) ? end : end - 0.5f);
-    if (b + 1 < bands.size() && !touches(b))
+    layout.bands.emplace_back(first, end, b > 0 && touches(bands, b - 1) ? first : first + 0.5f,
+                              touches(bands, b) ? end : end - 0.5f);
+    if (air[b])
       layout.cells.emplace_back(band.lastSlice, bands[b + 1].firstSlice, bands[b + 1].baseM - band.topM,
                                 0.0f);
   }

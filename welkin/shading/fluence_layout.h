@@ -18,7 +18,8 @@ struct FluenceLayout {
   std::vector<glm::vec4> bands;
 };
 
-// Bands that do not touch have a cell of air between them.
+// Bands that do not touch have a cell of air between them, the widest gaps first where there is not room for
+// all.
 FluenceLayout fluenceLayout(const LightVolumeLayout& volume);
 Uniforms fluenceUniforms(const FluenceLayout& layout);
 

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "tests/testing/skies.h"
+#include "welkin/field/cloud_layer.h"
 
 namespace welkin::shading {
 namespace {
@@ -63,6 +65,30 @@ TEST(FluenceLayout, HasCellsForAllHeights) {
   expectWhole(bandsAt(eight, 24));
   expectWhole(lightVolumeLayout(
       scene::buildSky(cloudyScene(40.0, {Genus::kCumulus, Genus::kCumulonimbus, Genus::kAltocumulus}), 0.0)));
+}
+
+// All layers there can be, apart, with metaballs as a volume: more bands and gaps than cells.
+TEST(FluenceLayout, HasRoomForAllBands) {
+  std::vector<std::pair<float, float>> many;
+  for (int bands = 1; bands <= field::kMaxLayers; ++bands) {
+    SCOPED_TRACE(bands);
+    // Gaps of 501, 502, ... m.
+    const float baseM = many.empty() ? 1000.0f : many.back().second + 500.0f + static_cast<float>(bands - 1);
+    many.emplace_back(baseM, baseM + 500.0f);
+    const LightVolumeLayout volume = bandsAt(many, 3);
+    const FluenceLayout layout = fluenceLayout(volume);
+    const int air = std::min(bands - 1, FluenceLayout::kMostCells - bands);
+    EXPECT_LE(layout.cells.size(), static_cast<std::size_t>(FluenceLayout::kMostCells));
+    EXPECT_GE(layout.cells.size(), static_cast<std::size_t>(bands + air));
+    for (int b = 0; b < bands; ++b) {
+      const glm::vec4& own = layout.bands[static_cast<std::size_t>(b)];
+      EXPECT_EQ(layout.cells[static_cast<std::size_t>(own.x)].x, static_cast<float>(3 * b));
+      EXPECT_EQ(layout.cells[static_cast<std::size_t>(own.y) - 1].y, static_cast<float>(3 * b + 2));
+      // The widest gaps, which are the upper ones, have a cell.
+      const bool hasAir = b + 1 < bands && layout.bands[static_cast<std::size_t>(b) + 1].x > own.y;
+      EXPECT_EQ(hasAir, b + 1 < bands && b >= bands - 1 - air);
+    }
+  }
 }
 
 TEST(FluenceLayout, LooksAcrossBandsOnlyWhereTheyTouch) {
