@@ -216,7 +216,9 @@ void MetaballSky::at(double secondsAfter, const glm::dvec3& eyeM, double earthRa
     const std::size_t coarseEnd =
         append(placed.levels, level, [](const field::Metaball& b) { return b; }, out.balls);
     const std::span<field::Metaball> own = std::span(out.balls).subspan(begin);
-    live(c, secondsAfter, own);
+    // Each level by itself: a ball's life is that of its number there, whatever levels are beside it.
+    live(c, secondsAfter, own.first(coarseEnd - begin));
+    live(c, secondsAfter, own.subspan(coarseEnd - begin));
     for (field::Metaball& b : own) {
       b.centreM += glm::dvec3(drifted, 0.0);
       b.centreM = overEarth(b.centreM, eyeM, earthRadiusM);
