@@ -96,7 +96,7 @@ struct SkyTracer::Impl {
         seed(settings.seed),
         projector(scene::projectorOf(s)),
         earth(s.clouds->earthRadiusM()),
-        clouds(*s.clouds, tracedLayers(s), matterOf(s)),
+        clouds(*state.clouds, tracedLayers(s), matterOf(s)),  // keeps to the field
         balls(tracedMetaballs(s)),
         air(s.atmosphere->uniforms()),
         lights(s, air, earth),
