@@ -26,7 +26,7 @@ gpu::Mesh quads() {
 }  // namespace
 
 FlarePass::Slots FlarePass::slotsOf(const std::string& name) {
-  Slots slots{name + "Count", name + "Surface", {}, {}};
+  Slots slots{name + "Count", name + "Surface", name + "Rim", {}, {}};
   for (std::size_t i = 0; i < kMaxFlat; ++i) {
     slots.sheets[i] = sheetUniformNames(name + "[" + std::to_string(i) + "]");
     slots.patterns[i] = name + "Pattern" + std::to_string(i);
@@ -42,21 +42,23 @@ FlarePass::FlarePass()
 
 void FlarePass::setSheets(const Slots& slots, bool volumes, std::size_t most,
                           std::span<const FlareSheet> sheets) {
-  std::array<glm::vec4, kMaxFlat> surfaces{};
+  std::array<glm::vec4, kMaxFlat> surfaces{}, rims{};
   std::size_t n = 0;
   for (const FlareSheet& sheet : sheets) {
     if ((sheet.pattern->depth() > 1) != volumes || n == most) continue;
     setSheet(program_, slots.sheets[n], sheet.look);
     program_.bind(slots.patterns[n], *sheet.pattern);
-    surfaces[n++] = sheet.shape;
+    surfaces[n] = sheet.shape.shape;
+    rims[n] = {sheet.shape.innerM, static_cast<float>(sheet.surface), 0.0f, 0.0f};
+    ++n;
   }
   program_.set(slots.count, static_cast<int>(n));
   program_.set(slots.surfaces, std::span<const glm::vec4>(surfaces).first(most));
+  program_.set(slots.rims, std::span<const glm::vec4>(rims).first(most));
 }
 
 void FlarePass::draw(const shading::LensFlare& flare, float strength, const shading::ViewParts& view,
-                     double earthRadiusM, std::span<const FlareSheet> sheets, const EngineDepth& depth,
-                     const gpu::Target& target, float scale) {
+                     double earthRadiusM, const Before& before, const gpu::Target& target, float scale) {
   if (flare.shown <= 0.0f || strength <= 0.0f) return;
   std::array<glm::vec4, shading::LensFlare::kSprites> places, lights;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -74,11 +76,13 @@ void FlarePass::draw(const shading::LensFlare& flare, float strength, const shad
   p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(earthRadiusM));
   p.set("uScale", scale);
-  setSheets(flat_, false, kMaxFlat, sheets);
-  setSheets(volumes_, true, kMaxVolumes, sheets);
-  p.set("uHasDepth", depth.texture ? 1.0f : 0.0f);
-  p.set("uFarDepth", depth.reversed ? 0.0f : 1.0f);
-  const gpu::TexelReader::Binding binding(depthReader_, p, "uDepth", depth.texture);
+  setSheets(flat_, false, kMaxFlat, before.sheets);
+  setSheets(volumes_, true, kMaxVolumes, before.sheets);
+  p.set("uHasInFront", before.picture ? 1.0f : 0.0f);
+  if (before.picture) p.bind("uInFront", *before.picture);
+  p.set("uHasDepth", before.depth.texture ? 1.0f : 0.0f);
+  p.set("uFarDepth", before.depth.reversed ? 0.0f : 1.0f);
+  const gpu::TexelReader::Binding binding(depthReader_, p, "uDepth", before.depth.texture);
   quads_.draw(p, target, {.blend = gpu::Blend::kAdd});
 }
 

@@ -15,6 +15,7 @@
 #include "welkin/render/sheet_pass.h"
 #include "welkin/shading/lens_flare.h"
 #include "welkin/shading/sheet_look.h"
+#include "welkin/shading/sheet_mesh.h"
 #include "welkin/shading/view.h"
 
 namespace welkin::render {
@@ -29,7 +30,8 @@ struct EngineDepth {
 // A sheet that may stand before the sun.
 struct FlareSheet {
   const gpu::Texture* pattern = nullptr;  // as SheetDraw has it
-  glm::vec4 shape{0.0f};                  // shading::shapeOf
+  shading::SheetShape shape;              // shading::shapeOf
+  scene::SheetSurface surface = scene::SheetSurface::kSkyPlane;
   shading::SheetLook look;
 };
 
@@ -40,16 +42,21 @@ class FlarePass {
 
   FlarePass();
 
+  // What stands before the sun.
+  struct Before {
+    std::span<const FlareSheet> sheets;
+    const gpu::Texture* picture = nullptr;  // in their place: w is the share of light that goes through
+    EngineDepth depth;
+  };
   // Adds it to the target. strength: the share of the sun's light that the lens scatters; scale: written
   // value for each cd/m2. Does nothing where no flare is shown. Allocates nothing.
   void draw(const shading::LensFlare& flare, float strength, const shading::ViewParts& view,
-            double earthRadiusM, std::span<const FlareSheet> sheets, const EngineDepth& depth,
-            const gpu::Target& target, float scale);
+            double earthRadiusM, const Before& before, const gpu::Target& target, float scale);
 
  private:
   // Where the sheets of one kind of pattern go in the program.
   struct Slots {
-    std::string count, surfaces;
+    std::string count, surfaces, rims;
     std::array<SheetUniformNames, kMaxFlat> sheets;
     std::array<std::string, kMaxFlat> patterns;
   };

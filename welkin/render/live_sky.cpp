@@ -101,6 +101,7 @@ struct LiveSky::Impl {
   Backdrops& backdrops() { return allBackdrops[others.number()]; }
   gpu::Program& boxBackdrop() { return boxBackdrops[others.number()]; }
   void change(const scene::SkyState& next);
+  void changeScene(const scene::SkyState& next, const Others& there);
   void refresh();
   void updateBox(const scene::SkyBox& wanted, const Others& with);
   void updateAmbient();
@@ -156,12 +157,24 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
   there.volumes = std::ranges::any_of(
       next.weather.layers, [&](const weather::Layer& layer) { return scene::isVolume(next.scene, layer); });
   there.splats = LiveSplats::in(next);
-  if (!same) updateBox(next.scene.skyBox, there);  // first, as its files may be missing
+  if (same) {
+    state = next;
+    return;
+  }
+  updateBox(next.scene.skyBox, there);  // first, as its files may be missing: all is as it was then
+  try {
+    changeScene(next, there);
+  } catch (...) {
+    state.reset();  // half of it is another scene's
+    throw;
+  }
+}
+
+void LiveSky::Impl::changeScene(const scene::SkyState& next, const Others& there) {
   state = next;
-  if (same) return;
   others = there;
   volumesKnow = airKnows = false;
-  volumesInSky.clear();
+  volumesInSky = shading::volumesIn(*state);
   sheets.clear();
   sheets = makeThinLayers(state->scene, state->weather, state->clouds->earthRadiusM());
   for (const ThinLayer& sheet : sheets)
@@ -174,7 +187,6 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
     splats->change(*state);
   }
   if (!others.volumes) return;
-  volumesInSky = shading::volumesIn(*state);
   if (!volumes) volumes.emplace();
   volumes->change(*state, sheets);
   volumesKnow = true;
@@ -200,12 +212,13 @@ void LiveSky::Impl::refresh() {
 }
 
 void LiveSky::Impl::updateBox(const scene::SkyBox& wanted, const Others& with) {
-  if (!box || box->box() != wanted) {
-    box.reset();
-    if (!wanted.empty()) box.emplace(wanted);
-  }
   gpu::Program& p = boxBackdrops[with.number()];
-  if (box && p.id() == 0) p = backdropProgram(shading::BackdropKind::kAll, {.skyBox = true}, with);
+  if (!wanted.empty() && p.id() == 0)
+    p = backdropProgram(shading::BackdropKind::kAll, {.skyBox = true}, with);
+  if (box && box->box() == wanted) return;
+  std::optional<SkyBoxTexture> next;  // where it cannot be made, the old one stays
+  if (!wanted.empty()) next.emplace(wanted);
+  box = std::move(next);
 }
 
 // The state's ambient light knows of its volumes and metaballs; here are sheets beside them.
@@ -293,14 +306,21 @@ void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target&
   const shading::LensFlare flare =
       shading::lensFlareOf(view, glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad),
                            shading::sunlightAt(*state, view.eyeM.z));
-  std::array<FlareSheet, FlarePass::kMaxFlat + FlarePass::kMaxVolumes> before;
-  const std::size_t count = std::min(sheets.size(), before.size());
-  for (std::size_t i = 0; i < count; ++i)
-    before[i] = {&sheets[i].pattern(),
-                 shading::shapeOf(sheets[i].sheet, state->clouds->earthRadiusM(), view.eyeM.z).shape,
-                 look(sheets[i], view)};
-  flarePass.draw(flare, options.flare, view, state->clouds->earthRadiusM(), std::span(before).first(count),
-                 options.depth, target, options.scale);
+  FlarePass::Before before;
+  before.depth = options.depth;
+  std::array<FlareSheet, FlarePass::kMaxFlat + FlarePass::kMaxVolumes> standing;
+  if (others.volumes) {
+    before.picture = &volumes->picture(options.view);  // with the sheets in it
+  } else {
+    const std::size_t count = std::min(sheets.size(), standing.size());
+    for (std::size_t i = 0; i < count; ++i)
+      standing[i] = {&sheets[i].pattern(),
+                     shading::shapeOf(sheets[i].sheet, state->clouds->earthRadiusM(), view.eyeM.z),
+                     sheets[i].sheet.surface, look(sheets[i], view)};
+    before.sheets = std::span(standing).first(count);
+  }
+  const float strength = options.flare * (others.splats ? splats->lightFrom(glm::vec3(sun.direction)) : 1.0f);
+  flarePass.draw(flare, strength, view, state->clouds->earthRadiusM(), before, target, options.scale);
 }
 
 void LiveSky::Impl::drawSplats(const shading::View& view, const shading::ViewParts& parts,

@@ -47,7 +47,8 @@ class LiveSky {
   LiveSky& operator=(const LiveSky&) = delete;
 
   // The sky `secondsAfter` the scene's time. Its layers are drawn as their techniques say (auto: as
-  // volumes). Throws as buildSky does.
+  // volumes). Throws as buildSky does, and for files of a sky box: the sky is as it was then. After a
+  // GpuError there is none until the next update().
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);

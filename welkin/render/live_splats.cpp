@@ -2,7 +2,10 @@
 #include "welkin/render/live_splats.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 
+#include "welkin/core/glsl.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/render/sky_splats.h"
 
@@ -11,6 +14,9 @@ namespace {
 
 // While clouds drift and grow there may come to be more of them than at first.
 constexpr std::size_t kRoom = 2;
+
+using namespace welkin::glsl;
+#include "shaders/lib/splat.glsl"
 
 }  // namespace
 
@@ -54,6 +60,23 @@ void LiveSplats::lookFrom(const scene::SkyState& state, const glm::dvec3& eyeM) 
   }
   heightM_ = 0.5 * (std::max(low, 0.0) + high);  // of far ones, over the curved earth, the ground's
   pass_.drawShadow(shadowClouds_, eyeM);
+}
+
+float LiveSplats::lightFrom(const glm::vec3& direction) const {
+  const glm::dvec3 d(direction), eye(0.0, 0.0, eyeM_->z);
+  double depth = 0.0;
+  for (std::size_t i = 0; i < shadowBalls_.clouds.size(); ++i) {
+    double own = 0.0;
+    for (const field::Metaball& b : shadowBalls_.ballsOf(i)) {
+      const glm::dvec3 to = b.centreM - eye;
+      const double along = glm::dot(to, d), aside2 = glm::dot(to, to) - along * along;
+      own += b.density * b.radiusM *
+             static_cast<double>(splatColumn(static_cast<float>(aside2 / (b.radiusM * b.radiusM)),
+                                             static_cast<float>(-along / b.radiusM), 1.0f));
+    }
+    depth += std::max(own, 0.0);
+  }
+  return static_cast<float>(std::exp(-depth));
 }
 
 void LiveSplats::draw(const shading::ViewParts& view, const SkyTextures& tables, const SplatTarget& to) {

@@ -28,6 +28,9 @@ class LiveSplats {
   double heightM() const { return heightM_; }
   // lib/splat_layer.glsl's shadow, for programs with WELKIN_SPLATS.
   void setShadow(gpu::Program& program) const { pass_.setShadow(program); }
+  // The share of light from behind it all that comes to the eye of lookFrom() out of a unit direction, as
+  // soft as their shadow.
+  float lightFrom(const glm::vec3& direction) const;
   void draw(const shading::ViewParts& view, const SkyTextures& tables, const SplatTarget& to);
 
  private:

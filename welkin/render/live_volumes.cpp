@@ -151,9 +151,12 @@ LiveVolumes::Swept LiveVolumes::wantedLight(const scene::SkyState& state, const 
           layout_.line,          layout_.towardsSun};
 }
 
+bool LiveVolumes::isOfAnotherTime(const Swept& wanted) const {
+  return !light_ || light_->bySun != wanted.bySun || std::abs(light_->seconds - wanted.seconds) > kLeapS;
+}
+
 bool LiveVolumes::leaps(const Swept& wanted, glm::dvec2 eyeM) const {
-  return !light_ || light_->bySun != wanted.bySun || std::abs(light_->seconds - wanted.seconds) > kLeapS ||
-         glm::distance(light_->centreM, eyeM) > kLeapM;
+  return isOfAnotherTime(wanted) || glm::distance(light_->centreM, eyeM) > kLeapM;
 }
 
 void LiveVolumes::needLight(const scene::SkyState& state, const CloudTextures& clouds,
@@ -282,7 +285,7 @@ void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading
 void LiveVolumes::march(std::size_t view, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
                         const CloudTextures& clouds, const SkyTextures& tables,
                         const shading::ViewParts& parts, int width, int height) {
-  if (view == 0 || !light_) keepLight(state, clouds, parts);
+  if (view == 0 || isOfAnotherTime(wantedLight(state, parts))) keepLight(state, clouds, parts);
   if (memories_.size() <= view) memories_.resize(view + 1);
   std::unique_ptr<Memory>& place = memories_[view];
   if (!place || place->history[0].width() != width || place->history[0].height() != height)

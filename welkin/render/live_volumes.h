@@ -47,7 +47,7 @@ class LiveVolumes {
 
   // Marches the frame's share of a view and completes it. view: its number; each has a memory of its own,
   // which is made when it is first drawn or drawn in another size. The light volume keeps to the eye of view
-  // 0.
+  // 0, and to the instant whatever views are drawn.
   void march(std::size_t view, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
              const CloudTextures& clouds, const SkyTextures& tables, const shading::ViewParts& parts,
              int width, int height);
@@ -57,6 +57,11 @@ class LiveVolumes {
                 const shading::ViewParts& parts);
   void setShadows(gpu::Program& program, std::size_t view, const scene::SkyState& state,
                   const shading::ViewParts& parts) const;
+  // The view's picture, premultiplied; w: the share of light from behind it all that goes through. After
+  // march() of the same view.
+  const gpu::Texture& picture(std::size_t view) const {
+    return memories_[view]->history[memories_[view]->now];
+  }
   // Draws it over the target. After march() of the same view.
   void show(std::size_t view, const gpu::Target& target, float scale);
 
@@ -113,6 +118,7 @@ class LiveVolumes {
 
   static Memory makeMemory(int width, int height, std::size_t bands);
   Swept wantedLight(const scene::SkyState& state, const shading::ViewParts& parts);
+  bool isOfAnotherTime(const Swept& wanted) const;
   bool leaps(const Swept& wanted, glm::dvec2 eyeM) const;
   void keepLight(const scene::SkyState& state, const CloudTextures& clouds, const shading::ViewParts& parts);
   glm::vec2 driftOfBand(const scene::SkyState& state, std::size_t band) const;

@@ -316,7 +316,7 @@ void SkyRenderer::Impl::addFlare(const scene::SkyState& state, const shading::Li
   const gpu::Texture2D texture(picture.width, picture.height, {.format = gpu::Format::kRgba32F});
   const gpu::Framebuffer target(texture);
   target.clear();
-  flare->draw(lens, strength, view, state.clouds->earthRadiusM(), {}, {}, target, 1.0f);
+  flare->draw(lens, strength, view, state.clouds->earthRadiusM(), {}, target, 1.0f);
   const Image<float> light = target.readPicture(0, 3);
   for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] += light.data[i];
 }

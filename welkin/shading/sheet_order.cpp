@@ -22,9 +22,10 @@ std::string callOf(std::span<const SheetOnRay> sheets, std::size_t i) {
          (volume ? ", vec3, sampler3D, " : ", vec2, sampler2D, ") + patternName(i) + ") ";
 }
 
-// By a ray: from above twice, but for a plane.
+// By a ray: from above twice. The farther place of a plane is beyond all that is drawn, but in the order of
+// an eye above everything it is where lower eyes meet it.
 int timesMet(const SheetOnRay& sheet, double eyeM) {
-  return eyeM > sheet.look.heightM && sheet.surface != scene::SheetSurface::kPlane ? 2 : 1;
+  return eyeM > sheet.look.heightM ? 2 : 1;
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tests/testing/engine_depth.h"
 #include "tests/testing/foreign_engine.h"
+#include "tests/testing/metaball_scene.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/core/units.h"
@@ -178,6 +180,52 @@ TEST_F(FlareTest, FollowsTheTexelsInFrontOfTheSun) {
   }
   EXPECT_LT(least, 0.3);
   EXPECT_GT(most, 0.7);
+}
+
+// The rim of a sheet is drawn thinner and thinner, and so the sun shines through it more and more.
+TEST_F(FlareTest, ShinesThroughTheRimsOfSheets) {
+  std::vector<double> opens;
+  for (const double elevationDeg : {3.0, 4.0, 30.0}) {
+    SCOPED_TRACE(elevationDeg);
+    scene::Scene s = sized(clearScene(elevationDeg), kWidth, kHeight);
+    s.technique = scene::Technique::kSkyPlane;
+    const sky::Body sun = scene::lightsAt(s, 0.0).ephemeris.sun;
+    s = looking(s, sun.azimuthDeg, sun.elevationDeg, 4.0);
+    const double clear = light(added(s));
+    s.sheets = {overcast(scene::SheetSurface::kPlane, 1.0)};
+    const double got = light(added(s)) / clear;
+    target.clear(0, glm::vec4(0.0f));
+    sky.draw(shading::viewOf(sky.state()), target, {.backdrop = false});
+    const glm::dvec2 centre = pixelsOf(flare().sunAt);
+    const double open =
+        1.0 - target.readPicture(0, 4).at(static_cast<int>(centre.x), static_cast<int>(centre.y), 3);
+    EXPECT_NEAR(got, open, 0.03);
+    opens.push_back(open);
+  }
+  EXPECT_GT(opens[0], opens[1] + 0.1);
+  EXPECT_GT(opens[1], opens[2] + 0.1);
+  EXPECT_LT(opens[2], 0.01);
+}
+
+// Marched clouds and metaballs before the sun.
+TEST_F(FlareTest, DoesNotShineThroughVolumes) {
+  scene::Scene s = beside(8.0, 5.0);
+  const double clear = light(added(s));
+  scene::Scene marched = s;
+  marched.technique = scene::Technique::kVolume;
+  marched.layers = cloudyScene(kSunElevationDeg, {weather::Genus::kStratus}, 8.0).layers;
+  EXPECT_LT(light(added(marched)), 0.01 * clear);
+  marched.layers = cloudyScene(kSunElevationDeg, {weather::Genus::kCirrostratus}, 8.0).layers;
+  const double thin = light(added(marched));
+  EXPECT_GT(thin, 0.05 * clear);
+  EXPECT_LT(thin, 0.95 * clear);
+
+  const MetaballFolder folder;
+  const glm::dvec3 toSun(scene::lightsAt(s, 0.0).lights[0].direction);
+  s.metaballs = {folder.ball(500.0, 0.05, 4000.0 * toSun)};
+  EXPECT_LT(light(added(s)), 0.01 * clear);
+  s.metaballs = {folder.ball(500.0, 0.05, 4000.0 * glm::dvec3(-toSun.x, -toSun.y, toSun.z))};
+  EXPECT_NEAR(light(added(s)), clear, 0.01 * clear);
 }
 
 TEST_F(FlareTest, AnEnginesThingsHideTheSun) {

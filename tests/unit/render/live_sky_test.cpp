@@ -265,6 +265,37 @@ TEST_F(LiveSkyTest, AFrameWithMetaballsIsTheSameFirstOrAfterOthers) {
   EXPECT_EQ(drawn(other).data, expected.data);
 }
 
+// A thin sheet beside metaballs leaves the light that these let through as it is.
+TEST_F(LiveSkyTest, SheetsBesideMetaballsKeepTheirLight) {
+  scene::Scene s = heapedScene();
+  s.layers[0].oktas = 6.0;
+  s.layers[1].oktas = 0.5;
+  const auto ambientOf = [](const scene::Scene& scene) {
+    LiveSky sky;
+    sky.update(scene, 0.0);
+    return sky.state().ambient;
+  };
+  const scene::AmbientLight with = ambientOf(s);
+  s.layers.pop_back();
+  const scene::AmbientLight alone = ambientOf(s);
+  EXPECT_NEAR(with.clearAir, alone.clearAir, 0.15f * alone.clearAir);
+  EXPECT_NEAR(with.skyOnGround.y, alone.skyOnGround.y, 0.15f * alone.skyOnGround.y);
+}
+
+// By night there is the most to bind.
+TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAtNight) {
+  LiveSky sky;
+  const ForeignEngine engine;
+  const auto before = engine.state();
+  scene::Scene s = moonlitScene();
+  s.layers = heapedScene().layers;
+  s.layers.push_back(s.layers[0]);
+  s.layers[2].technique = scene::Technique::kVolume;
+  sky.update(s, 0.0);
+  sky.draw(shading::viewOf(sky.state()), gpu::Target(engine.framebuffer(), {0, 0, 16, 8}), {.scale = 1.0f});
+  EXPECT_EQ(engine.state(), before);
+}
+
 TEST_F(LiveSkyTest, AnEngineFindsItsStateAgainAfterMetaballs) {
   LiveSky sky;
   const ForeignEngine engine;

@@ -204,6 +204,36 @@ TEST_F(LiveVolumesTest, WhereGapsCloseNothingIsBlack) {
   EXPECT_EQ(dark, 0);
 }
 
+// A plane over the eye, though the order is that of an eye above everything.
+TEST_F(LiveVolumesTest, PlanesAreMetFromBelow) {
+  scene::Scene s = cumulus();
+  s.layers[0].oktas = 1.0;
+  scene::Sheet plane;
+  plane.surface = scene::SheetSurface::kPlane;
+  plane.heightM = 4000.0;
+  plane.oktas = 8.0;
+  s.sheets = {plane};
+  LiveSky sky;
+  sky.update(s, 0.0);
+  const Image<float> live = after(sky, viewOf(s), 2 * kRound);
+  EXPECT_LT(relativeDifference(live, still(s)), 0.06);
+  s.sheets.clear();
+  EXPECT_GT(relativeDifference(live, still(s)), 0.2);
+}
+
+// Time leaps while view 0 is not drawn.
+TEST_F(LiveVolumesTest, EveryViewIsLitByTheLightOfItsTime) {
+  const scene::Scene s = cumulus();
+  const shading::View view = viewOf(s);
+  LiveSky leaping, fresh;
+  leaping.update(s, 0.0);
+  after(leaping, view, 2, 1);
+  leaping.update(s, 4.0 * 3600.0);
+  fresh.update(s, 4.0 * 3600.0);
+  EXPECT_LT(relativeDifference(after(leaping, view, 4 * kRound, 1), after(fresh, view, 4 * kRound, 1)),
+            0.005);
+}
+
 // Each view has a memory of its own.
 TEST_F(LiveVolumesTest, ViewsDoNotDisturbEachOther) {
   const scene::Scene s = cumulus();

@@ -143,6 +143,17 @@ TEST_F(SkyBoxTest, AMissingOneIsAnErrorEachTime) {
   EXPECT_NO_THROW(drawn(boxed(0.0, 20.0)));
 }
 
+TEST_F(SkyBoxTest, WhereOneIsMissingTheSkyStaysAsItWas) {
+  const scene::Scene there = boxed(0.0, 20.0);
+  const Image<float> before = drawn(there);
+  scene::Scene s = there;
+  s.skyBox.strip = "none.exr";
+  EXPECT_THROW(sky.update(s, 0.0), IoError);
+  sky.draw(shading::viewOf(sky.state()), target);
+  EXPECT_EQ(target.readPicture(0, 3).data, before.data);
+  EXPECT_EQ(drawn(there).data, before.data);
+}
+
 TEST_F(SkyBoxTest, AnEngineFindsItsStateAgain) {
   const ForeignEngine engine;
   const auto before = engine.state();

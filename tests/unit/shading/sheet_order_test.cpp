@@ -169,9 +169,8 @@ TEST(SheetOrder, IsThatOfTheRayFromAnyHeight) {
   };
   EXPECT_EQ(ways(2.0), "| piece0 far0 piece2 far1 ");
   EXPECT_EQ(ways(1500.0), "piece0 | piece0 far0 piece2 far1 ");
-  // The plane beneath is not met again on the way up, the sky plane is.
-  EXPECT_EQ(ways(5000.0), "near0 piece0 | piece0 piece2 far1 ");
-  EXPECT_EQ(ways(12000.0), "near1 piece2 near0 piece0 | piece0 piece2 far1 ");
+  EXPECT_EQ(ways(5000.0), "near0 piece0 | piece0 far0 piece2 far1 ");
+  EXPECT_EQ(ways(12000.0), "near1 piece2 near0 piece0 | piece0 far0 piece2 far1 ");
 }
 
 TEST(SheetOrder, LayersThatAreSheetsAreInNoBand) {
