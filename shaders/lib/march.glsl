@@ -42,7 +42,8 @@ WELKIN_FIXED uniform vec4 uBandSky[kMaxLayers];  // for each band: of the light 
 #ifdef WELKIN_SEGMENTS
 #define WELKIN_WITHIN(step) min(step, stretch.y - stretch.x)
 #else
-#define WELKIN_WITHIN(step) (step)
+// Two steps at least through a stretch, or a short one would be met by some pixels and not by others.
+#define WELKIN_WITHIN(step) min(step, 0.5 * (stretch.y - stretch.x))
 #endif
 
 // Bands of rain or snow alone, which has neither a sharp edge nor forms that the light volume misses: its surface is not sought, nor are shadows in it.
@@ -212,6 +213,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
   float lastClear = stretch.x;  // a place in front of the surface
   int fine = 0;                 // short steps to go before stepping far again
   bool entering = true;         // the next sample in cloud is the first behind a surface
+  bool fromStart = false;       // there has been cloud since the stretch began: from there on steps are laid end to end
   float skinStep = 1e9;         // steps grow from the surface on, where most of what is seen lies
   float opaque = opaqueTowards(dir);
   while (state.steps < uMaxSteps && t < stretch.y && state.transmittance > 0.0) {
@@ -279,7 +281,8 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
           }
         }
       }
-      if (lastClear == stretch.x) t = stretch.x;
+      fromStart = lastClear == stretch.x;
+      if (fromStart) t = stretch.x;
       entering = false;
     }
 #ifdef WELKIN_SPLATS
@@ -288,6 +291,8 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     float stepM = min(shortStep, skinStep);
 #ifdef WELKIN_SEGMENTS
     stepM = min(stepM, stretch.y - t);
+#else
+    if (fromStart) stepM = min(stepM, stretch.y - t);
 #endif
     skinStep *= 2.0;
     float through = exp(-point.extinction * stepM);
