@@ -11,6 +11,7 @@
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
+#include "welkin/scene/hazy_deck.h"
 #include "welkin/scene/sheet_texture.h"
 #include "welkin/sky/light.h"
 
@@ -68,6 +69,7 @@ struct CloudShade {
   double lowM = 0.0, highM = 0.0;  // the lowest base and the highest top
   double lightM = 0.0;             // where light falls on what is thick enough to scatter it all
   bool any = false;
+  Deck deck;  // the layer that takes most of it
   // Share of the key light that goes on downwards after clouds have scattered it.
   double scatteredDown() const { return std::max(passes - (1.0 - slantCover), 0.0); }
 };
@@ -76,7 +78,7 @@ struct CloudShade {
 CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const field::CloudField& clouds,
                       double sunHeight) {
   CloudShade shade;
-  double clear = 1.0, straight = 1.0, slantwise = 1.0;
+  double clear = 1.0, straight = 1.0, slantwise = 1.0, most = 0.0;
   const double mu = std::max(sunHeight, 0.05), tangent = std::sqrt(1.0 - sunHeight * sunHeight) / mu;
   bool all = true;
   for (std::size_t i = 0; i < weather.layers.size(); ++i) {
@@ -95,7 +97,12 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
       const double among = std::pow(overhead, leaks * cosine);
       return among * slabReflectance(depthBySimilarity, cosine);
     };
-    shade.diffuse *= 1.0 - cover * reflected(kDiffuseMu);
+    const double taken = cover * reflected(kDiffuseMu);
+    if (taken > most) {
+      most = taken;
+      shade.deck = {layer.baseM, layer.topM, cover * depthBySimilarity};
+    }
+    shade.diffuse *= 1.0 - taken;
     clear *= 1.0 - cover;
     // A slanting ray comes by more clouds; a few at most, as gaps are in line.
     const double past = std::pow(1.0 - overhead, 1.0 + moreCells(tangent, cells));
@@ -244,8 +251,9 @@ AmbientLight ambientLight(const SkyState& s) {
   // What goes through clouds fell on them where the sky is darker and less blue than at the ground.
   const glm::vec3 skyOnClouds = skyAt(a, shade.lightM, highM).along[2];
   const float gaps = std::min(1.0f - cover, through);
-  const glm::vec3 skyThrough = skyOnGround * gaps + skyOnClouds * (through - gaps);
-  a.skyOnGround = skyThrough + onClouds * scatteredDown;
+  const HazyLight hazy = lightThroughHaze(shade.deck, atmosphere.uniforms());
+  a.skyOnGround =
+      skyOnGround * gaps + hazy.onGround * (skyOnClouds * (through - gaps) + onClouds * scatteredDown);
   a.ground = albedo / pi * (a.skyOnGround + direct * (1.0f - taken));
   // Clouds are whiter than the ground, and what they send up the air sends down again, most of it blue.
   const glm::vec3 bare = albedo / pi * (skyOnGround + direct);
@@ -255,7 +263,8 @@ AmbientLight ambientLight(const SkyState& s) {
     return atmosphere.sphericalAlbedo(altitudeM) * (upward - bare);
   };
   const glm::vec3 moreOnGround = pi * sentBack(ground);
-  const glm::vec3 moreThrough = moreOnGround * gaps + pi * sentBack(ground + shade.lightM) * (through - gaps);
+  const glm::vec3 moreThrough =
+      moreOnGround * gaps + hazy.onGround * pi * sentBack(ground + shade.lightM) * (through - gaps);
   a.above = a.above + hemisphere(sentBack(ground), 1.0f);
   a.aboveLow = a.aboveLow + hemisphere(sentBack(ground + ClearSkyKey::kLowM), 1.0f);
   a.aboveHigh = a.aboveHigh + hemisphere(sentBack(highAltitude(ground)), 1.0f);
@@ -273,12 +282,13 @@ AmbientLight ambientLight(const SkyState& s) {
   // came, and counts three quarters.
   const float onwards = std::max(scatteredDown - (1.0f - passes), 0.0f);
   const float fromAllSides = scatteredDown - 0.25f * onwards;
+  const glm::vec3 onHaze = 0.5f * (hazy.onGround + hazy.underDeck);
   sky::LightMoments under =
       throughGaps(clear, gaps, 1.0f - taken) + hemisphere(moreThrough / pi, 1.0f) +
       hemisphere(a.ground, -1.0f) +
-      fromClouds(skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides), cover);
+      fromClouds(onHaze * (skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides)), cover);
   for (int i = 0; i < 2; ++i)
-    under.along[i] += 2.0f * kOnwards * s.lights[0].direction[i] * (aside * onwards) * onClouds;
+    under.along[i] += 2.0f * kOnwards * s.lights[0].direction[i] * (aside * onwards) * onHaze * onClouds;
   const AirLight none = airLight(clear + hemisphere(bare, -1.0f));
   a.haze = airLight((1.0f - above) * under + above * over);
   a.cloudGlow = excess(a.haze, none);

@@ -109,6 +109,30 @@ TEST(AmbientLight, OfSkyAndCloudsOnTheGroundIsAsTraced) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(std::size(traced))), 0.13);
 }
 
+// Haze under a deck, and in it, where light goes far: what of the ground's luminance it leaves. Nimbostratus
+// of 300 to 2,800 m, the sun 20 degrees up, straight down from 2 m, `--renderer reference --spp 700`, in that
+// with a visibility of 300 km; red and blue, to 5 %.
+TEST(AmbientLight, OfTheGroundUnderADeckInHazeIsAsTraced) {
+  struct Traced {
+    double visibilityM, red, blue;
+  };
+  const auto groundAt = [](double visibilityM) {
+    Scene s = sceneUnder(weather::Genus::kNimbostratus, 8.0, "2026-01-21T11:20:00Z");
+    s.place.latitudeDeg = 50.0;
+    s.place.longitudeDeg = 8.0;
+    s.layers[0].baseM = 300.0, s.layers[0].topM = 2800.0;
+    s.visibilityM = visibilityM;
+    return buildSky(s, 0.0).ambient.ground;
+  };
+  const glm::vec3 clear = groundAt(300e3);
+  for (const Traced& t : {Traced{5000.0, 0.753, 0.700}, {1500.0, 0.672, 0.662}, {800.0, 0.552, 0.568}}) {
+    SCOPED_TRACE(t.visibilityM);
+    const glm::vec3 hazy = groundAt(t.visibilityM);
+    EXPECT_NEAR(hazy.x / clear.x, t.red, 0.1);
+    EXPECT_NEAR(hazy.z / clear.z, t.blue, 0.1);
+  }
+}
+
 // Clouds are whiter than the ground: the sky over them is brighter for it, and bluer.
 TEST(AmbientLight, OfTheSkyIsMoreOverClouds) {
   const AmbientLight clear = skyUnder(weather::Genus::kStratus, 0.0, "2026-06-21T09:00:00Z").ambient,

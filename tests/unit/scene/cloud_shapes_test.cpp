@@ -170,7 +170,8 @@ TEST(CloudShapes, TowersKeepMoreOfTheirBreadthThanHeaps) {
   EXPECT_LT(towers.carried(0.8, 0.55), 0.92);
 }
 
-// In one pattern the peaks alone would be left of few: the slenderer and the more pointed, the fewer there are.
+// In one pattern the peaks alone would be left of few: the slenderer and the more pointed, the fewer there
+// are.
 TEST(CloudShapes, FewHeapsAreAsBroadAsMany) {
   const Shape many(Genus::kCumulus, 600.0, 4.0);
   for (const double oktas : {1.0, 2.0}) {
