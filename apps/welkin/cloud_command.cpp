@@ -147,6 +147,8 @@ TexelSource sourceOf(const CloudArgs& args, const CloudRequest& r) {
   s.format = fileKindOf(s.command, *args.output.out) == io::TexelFileKind::kDds
                  ? io::TexelFormat{io::Channels::kA, io::ValueType::kUnorm8}
                  : io::TexelFormat{io::Channels::kR, io::ValueType::kFloat};
+  for (const Flag& input : {args.ellipsoids, args.metaballs})
+    if (input) s.inputs.push_back(*input);
   s.notes.voxelSizeM = glm::dvec3(r.map.voxelM);
   s.notes.firstVoxelM = field::firstVoxelM(r.map);
   s.notes.name = "density";
@@ -189,7 +191,7 @@ int growMetaballs(const CloudArgs& args) {
           "the flags of a tower");
   if (args.size || o.preview || o.tile || o.file.format || o.file.mipmaps || o.file.edges || o.file.header)
     throw UsageError("cloud: " + *o.out + ": --size, --preview, --tile and --format are for volumes");
-  checkReport(o);
+  checkFiles(o, {});
   CloudRequest r;
   applyTexts(r, args.params, cloudParamFlags());
   const Stopwatch watch;

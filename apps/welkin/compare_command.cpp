@@ -7,8 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <variant>
 
+#include "call_files.h"
 #include "render_settings.h"
 #include "usage_error.h"
 #include "welkin/core/colour.h"
@@ -105,12 +107,22 @@ Pictures readBoth(const CompareArgs& args) {
   return p;
 }
 
-void writeMap(const char* flag, const Flag& path, const Image<float>& colours) {
-  if (!path) return;
-  if (formatOf(*path) != io::ImageFormat::kPng)
-    throw UsageError(
-        fmt::format("compare: {}: expected a name that ends in .png, found \"{}\"", flag, *path));
-  io::writeImage(*path, colours);
+// The maps' names, before anything is read.
+void checkMaps(const CompareArgs& args) {
+  CallFiles files;
+  files.reads(args.picture);
+  files.reads(args.truth);
+  for (const auto& [flag, path] : {std::pair("--bias", args.biasMap), std::pair("--flip", args.flipMap)}) {
+    if (!path) continue;
+    if (formatOf(*path) != io::ImageFormat::kPng)
+      throw UsageError(
+          fmt::format("compare: {}: expected a name that ends in .png, found \"{}\"", flag, *path));
+    files.writes(flag, *path);
+  }
+}
+
+void writeMap(const Flag& path, const Image<float>& colours) {
+  if (path) io::writeImage(*path, colours);
 }
 
 }  // namespace
@@ -119,15 +131,15 @@ int runCompare(const CompareArgs& args) {
   if (args.picture.empty() || args.truth.empty())
     throw UsageError("compare: expected two pictures, PICTURE and TRUTH");
   const double range = args.range ? numberIn("--range", *args.range, 1e-6, 1e6) : 0.5;
+  checkMaps(args);
   const Pictures p = readBoth(args);
   const reference::PictureError error = reference::errorOf(p.linear[0], p.linear[1]);
   const Image<float> flip = reference::flipOf(p.screen[0], p.screen[1]);
   double flipMean = 0.0;
   for (const float f : flip.data) flipMean += static_cast<double>(f) / static_cast<double>(flip.data.size());
   const double flipMost = static_cast<double>(*std::max_element(flip.data.begin(), flip.data.end()));
-  writeMap("--bias", args.biasMap,
-           reference::biasColours(reference::biasMap(p.linear[0], p.linear[1]), range));
-  writeMap("--flip", args.flipMap, reference::flipColours(flip));
+  writeMap(args.biasMap, reference::biasColours(reference::biasMap(p.linear[0], p.linear[1]), range));
+  writeMap(args.flipMap, reference::flipColours(flip));
 
   nlohmann::ordered_json j = {{"picture", args.picture},
                               {"truth", args.truth},

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "call_files.h"
 #include "interrupt.h"
 #include "progress_line.h"
 #include "texel_flags.h"
@@ -68,6 +69,9 @@ int runConvert(const ConvertArgs& args) {
   if (fileKindOf("convert", args.in) != TexelFileKind::kVdb && args.grid)
     throw UsageError("convert: --grid is for .vdb, which " + args.in + " is not");
   const TexelFileKind kind = fileKindOf("convert", args.out);
+  CallFiles files;
+  files.readsTexels(args.in);
+  files.writesTexels("convert", args.out);
   const io::DdsOptions dds = ddsOptions("convert", args.file, kind, io::MipEdges::kClamp);
   const io::Texels texels = args.grid ? io::readVdb(args.in, {.grid = *args.grid}) : io::readTexels(args.in);
   ProgressLine progress;

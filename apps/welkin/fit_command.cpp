@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "call_files.h"
 #include "interrupt.h"
 #include "picture_writer.h"
 #include "progress_line.h"
@@ -56,9 +57,17 @@ void checkFlags(const FitArgs& args) {
   if (!args.balls && !args.resume) throw UsageError("fit: expected --balls K, how many");
   if (!args.out->ends_with(".json"))
     throw UsageError("fit: " + *args.out + " is no .json; expected a name such as cloud.json");
-  if (args.report == args.out)
-    throw UsageError("--report: " + *args.report + " is written already; expected another name");
   fileKindOf("fit", args.map);
+  // Balls may take the place of those that they went on from.
+  CallFiles files;
+  files.readsTexels(args.map);
+  files.writes("-o", *args.out);
+  if (args.report) files.writes("--report", *args.report);
+  if (args.resume && args.report) {
+    CallFiles resumed;
+    resumed.reads(*args.resume);
+    resumed.writes("--report", *args.report);
+  }
 }
 
 struct Map {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "call_files.h"
 #include "usage_error.h"
 #include "welkin/core/units.h"
 #include "welkin/field/metaballs.h"
@@ -20,6 +21,7 @@
 #include "welkin/scene/metaball_file.h"
 #include "welkin/scene/param_text.h"
 #include "welkin/scene/scene_file.h"
+#include "welkin/scene/scene_files.h"
 #include "welkin/scene/theme.h"
 
 namespace welkin::app {
@@ -119,6 +121,23 @@ void frameCloud(Scene& s, bool eyeGiven, bool lookGiven) {
   s.camera.fovDeg = 2.0 * degrees(std::atan(0.5 * wide / kFill / std::hypot(distanceM, up)));
 }
 
+// None is written over another, or over what the picture is made of.
+void checkFiles(const RenderSettings& r, const RenderArgs& a, const std::optional<std::string>& themeFile) {
+  CallFiles files;
+  if (a.scene) files.reads(*a.scene);
+  if (themeFile) files.reads(*themeFile);
+  for (const std::string& path : scene::filesOf(r.scene)) files.readsTexels(path);
+  if (!r.out.empty() && !r.numbered) files.writes("-o", r.out);
+  if (!r.resume.empty()) files.writes("--resume", r.resume);
+  if (!r.report.empty()) files.writes("--report", r.report);
+  if (!r.numbered) return;
+  try {
+    files.writesFrames("-o", io::FramePattern(r.out), r.scene.output.frames);
+  } catch (const ParameterError& e) {
+    throw UsageError(e.what());
+  }
+}
+
 // What the name of the output says about its kind.
 void setOutput(RenderSettings& r, const std::string& out) {
   r.out = out;
@@ -178,13 +197,13 @@ RenderSettings renderSettings(const RenderArgs& a) {
   }
   if (a.threads) r.threads = threadsOf(*a.threads);
   if (a.report) r.report = *a.report;
-  if (a.out && r.report == r.out)
-    throw UsageError("--report: " + r.report + " is the picture already; expected another name");
 
   // The place first: what is typical of a layer in the file depends on the latitude.
   Scene flagged;
   if (a.place) setPlace(flagged, "--place", *a.place);
   bool sizeGiven = a.size.has_value();
+  std::optional<std::string> themeFile;
+  if (a.theme && std::filesystem::path(*a.theme).extension() == ".toml") themeFile = *a.theme;
   const bool metaballs = a.scene && std::filesystem::path(*a.scene).extension() == ".json";
   if (metaballs) {
     if (a.theme) scene::apply(themeOfFlag(*a.theme), r.scene);
@@ -195,6 +214,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
         *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt, a.theme);
     sizeGiven = sizeGiven || file.gives("output.width") || file.gives("output.height");
     r.scene = std::move(file.scene);
+    if (file.themeFile) themeFile = file.themeFile;
   } else if (a.theme) {
     scene::apply(themeOfFlag(*a.theme), r.scene);
   }
@@ -238,6 +258,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
     throw UsageError(
         r.out + ": " + std::to_string(s.output.frames) +
         " frames need a place for their number; expected a name such as name_%04d.png, or a video");
+  checkFiles(r, a, themeFile);
   return r;
 }
 

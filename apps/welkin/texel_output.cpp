@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
+#include "call_files.h"
 #include "picture_writer.h"
 #include "texel_flags.h"
 #include "usage_error.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/io/file_extension.h"
-#include "welkin/io/raw.h"
 
 namespace welkin::app {
 namespace {
@@ -36,40 +34,23 @@ glm::ivec2 tilesOf(const Flag& tile) {
   return n;
 }
 
-// However they are spelt.
-bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto plain = [](const std::filesystem::path& path) {
-    std::error_code error;
-    const auto absolute = std::filesystem::absolute(path, error);
-    const auto canonical = std::filesystem::weakly_canonical(absolute, error);
-    return error ? absolute : canonical;
-  };
-  return plain(a) == plain(b);
-}
-
-bool isOutput(const OutputArgs& args, const std::string& path) {
-  if (isSameFile(path, *args.out)) return true;
-  const bool json = io::lowerExtension(*args.out) == ".json";  // RAW's side file, or a file of metaballs
-  if (!json && io::lowerExtension(*args.out) != ".raw") return false;
-  return isSameFile(path, io::rawTexelPath(*args.out)) || isSameFile(path, io::rawSidePath(*args.out));
-}
-
 void checkPreview(const OutputArgs& args) {
   if (args.tile && !args.preview) throw UsageError("--tile goes with --preview");
   if (!args.preview) return;
   if (io::lowerExtension(*args.preview) != ".png")
     throw UsageError("--preview: " + *args.preview + " is no .png; expected a name such as preview.png");
-  if (isOutput(args, *args.preview))
-    throw UsageError("--preview: " + *args.preview + " is the output already; expected another name");
 }
 
 }  // namespace
 
-void checkReport(const OutputArgs& args) {
-  if (!args.report) return;
-  if (isOutput(args, *args.report) || (args.preview && isSameFile(*args.report, *args.preview)))
-    throw UsageError("--report: " + *args.report + " is written already; expected another name");
-  checkWritable(*args.report);
+void checkFiles(const OutputArgs& args, const std::vector<std::string>& inputs) {
+  CallFiles files;
+  for (const std::string& path : inputs) files.reads(path);
+  files.writesTexels("-o", *args.out);
+  if (args.preview) files.writes("--preview", *args.preview);
+  if (args.report) files.writes("--report", *args.report);
+  if (args.preview) checkWritable(*args.preview);
+  if (args.report) checkWritable(*args.report);
 }
 
 TexelOutput::TexelOutput(const OutputArgs& args, const TexelSource& source)
@@ -93,8 +74,7 @@ TexelOutput::TexelOutput(const OutputArgs& args, const TexelSource& source)
     narrow.format.channels = source.format.channels;
     converter_.emplace(narrow, shape_.format);
   }
-  if (preview_) checkWritable(previewPath_);
-  checkReport(args);
+  checkFiles(args, source.inputs);
   writer_ = io::createTexelFile(*args.out, shape_, source.notes, dds);
 }
 

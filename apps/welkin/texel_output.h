@@ -28,6 +28,7 @@ struct TexelSource {
   bool tiles = false;               // mipmaps may take the other side beyond an edge
   bool northUp = false;             // see TexelPreview
   io::TexelNotes notes;
+  std::vector<std::string> inputs;  // files that were read
 };
 
 class TexelOutput {
@@ -58,7 +59,7 @@ class TexelOutput {
   std::vector<std::byte> bytes_;
 };
 
-// Checks the report's name and the folder that it goes to.
-void checkReport(const OutputArgs& args);
+// That no output is another, or one of the files that were read, and that preview and report can be written.
+void checkFiles(const OutputArgs& args, const std::vector<std::string>& inputs);
 
 }  // namespace welkin::app

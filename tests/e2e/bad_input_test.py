@@ -103,7 +103,33 @@ class Outputs(ProgramTest):
         self.fail_with(2, "expected even width and height", "render", *CUMULUS, "--size", "97x55", "-o", "x.mp4")
 
     def test_report_over_the_picture(self):
-        self.fail_with(2, "--report: x.png is the picture already", "render", "-o", "x.png", "--report", "x.png")
+        for report in ("x.png", "./x.png", "../" + self.folder.name + "/x.png"):
+            self.fail_with(2, f"--report: {report} is written already, by -o; expected another name", "render", "-o", "x.png",
+                           "--report", report)
+        self.fail_with(2, "-o: x_0002.png is written already, by --report", "render", *TINY, "-o", "x_%04d.png", "--frames", "3",
+                       "--report", "x_0002.png")
+
+    def test_outputs_over_what_the_picture_is_made_of(self):
+        sheet = '[[sheet]]\ntexture = "t.png"\n'
+        cloud = '[[metaballs]]\nfile = "cloud.json"\n'
+        self.write("own.toml", 'theme = "theme.toml"\n' + sheet + cloud)
+        self.write("slab.toml", "[slab]\noptical_depth = 1\n")
+        self.write("theme.toml", '[[sheet]]\ntexture = "u.png"\n')
+        self.write("cloud.json", '{"welkin": "metaballs", "balls": [{"center_m": [0, 0, 0], "radius_m": 90, "density": 1}]}')
+        self.write("t.png", "")
+        self.write("u.png", "")
+        os.symlink("own.toml", self.folder / "link.toml")
+        before = {name: (self.folder / name).read_bytes() for name in self.files()}
+        for report in ("own.toml", "link.toml", "theme.toml", "cloud.json", "t.png", "./u.png"):
+            self.fail_with(2, f"--report: {report} is read; expected another name", "render", "own.toml", "-o", "x.png",
+                           "--report", report)
+        self.fail_with(2, "-o: t.png is read", "render", "own.toml", "-o", "t.png")
+        self.fail_with(2, "--report: theme.toml is read", "render", "--theme", "theme.toml", "-o", "x.png", "--report", "theme.toml")
+        self.fail_with(2, "--report: cloud.json is read", "render", "cloud.json", "-o", "x.png", "--report", "cloud.json")
+        self.fail_with(2, "--report: slab.toml is read", "render", "slab.toml", "--renderer", "reference", "--report", "slab.toml")
+        self.fail_with(2, "--resume: own.toml is read", "render", "own.toml", "--renderer", "reference", "-o", "x.exr",
+                       "--resume", "own.toml")
+        self.assertEqual({name: (self.folder / name).read_bytes() for name in self.files()}, before)
 
     def test_bad_patterns(self):
         for pattern in ("x_%s.png", "x_%d_%d.png", "x_%n.png", "x_%.png", "x_%99999d.png"):

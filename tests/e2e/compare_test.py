@@ -54,6 +54,9 @@ class Compare(ProgramTest):
         self.fail_with(2, "--exposure is for pictures of luminance", "compare", "a.png", "a.png", "--exposure", "12")
         self.fail_with(2, "--range: expected a number", "compare", "a.exr", "a.exr", "--range", "wide")
         self.fail_with(2, "ends in .png", "compare", "a.exr", "a.exr", "--flip", "map.exr")
+        self.fail_with(2, "--bias: ./a.png is read", "compare", "a.png", "a.png", "--bias", "./a.png")
+        self.fail_with(2, "--flip: ./b.png is written already, by --bias", "compare", "a.png", "a.png", "--bias", "b.png",
+                       "--flip", "./b.png")
         self.fail_with(1, "missing.exr", "compare", "a.exr", "missing.exr")
         self.write("torn.exr", "v/1\x01")
         self.fail_with(1, "torn.exr", "compare", "torn.exr", "a.exr")

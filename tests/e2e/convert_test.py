@@ -133,6 +133,8 @@ class Convert(ProgramTest):
         colour = str(DATA / "gimp_mips.dds")
         self.fail_with(2, "convert: expected two files, IN and OUT", "convert", colour)
         self.fail_with(2, "unknown extension .tga; expected .png", "convert", colour, "b.tga")
+        self.fail_with(2, f"convert: {colour} is read; expected another name", "convert", colour, colour, "--format", "rgb8")
+        self.fail_with(2, "is read; expected another name", "convert", "a.raw", "a.raw.json")
         self.fail_with(2, "there is no texel format \"bgra8\"", "convert", colour, "b.dds", "--format", "bgra8")
         self.fail_with(2, "b.png cannot hold a picture of rgb32f", "convert", colour, "b.png", "--format", "rgb32f")
         self.fail_with(2, '--mipmaps is "cubic"; expected none, box or kaiser', "convert", colour, "b.dds", "--mipmaps", "cubic")

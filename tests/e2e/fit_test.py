@@ -139,7 +139,10 @@ class Fit(ProgramTest):
                               (("-o", "x.json", "--balls", "3", "--method", "man", "--signed"), "--signed goes with"),
                               (("-o", "x.json", "--balls", "3", "--ball", "4"), "did you mean --balls?"),
                               (("-o", "x.json", "--balls", "3", "--time-limit", "-1"), "--time-limit"),
-                              (("-o", "x.json", "--balls", "3", "--report", "x.json"), "is written already")):
+                              (("-o", "x.json", "--balls", "3", "--report", "./x.json"), "is written already"),
+                              (("-o", "x.json", "--balls", "3", "--report", "m.raw"), "--report: m.raw is read"),
+                              (("-o", "m.raw.json", "--balls", "3"), "-o: m.raw.json is read"),
+                              (("-o", "x.json", "--resume", "r.json", "--report", "r.json"), "--report: r.json is read")):
             self.fail_with(2, message, "fit", "m.raw", *args)
         for balls in ("0", "3,", ",3", "3.5", "-1", "many", "3 4", "99999999999999999999"):
             self.fail_with(2, "--balls: expected whole numbers", "fit", "m.raw", "-o", "x.json", "--balls=" + balls)

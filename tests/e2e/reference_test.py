@@ -49,6 +49,16 @@ class Reference(ProgramTest):
         (self.folder / "broken.exr").write_bytes(self.read("state.exr")[:400])
         self.fail_with(1, "broken.exr", "render", *CUMULUS, *SMALL, "-o", "x.exr", "--spp", "8", "--resume", "broken.exr")
 
+    def test_refuses_to_write_over_what_is_traced_so_far(self):
+        self.trace("part.exr", "--spp", "2", "--resume", "state.exr")
+        state = self.read("state.exr")
+        for out, more in (("state.exr", ()), ("./state.exr", ()), ("x.exr", ("--report", "state.exr"))):
+            self.fail_with(2, "state.exr is written already, by ", "render", *CUMULUS, *SMALL, "-o", out, "--spp", "4",
+                           "--resume", "state.exr", *more)
+        self.fail_with(2, "--resume: new.exr is written already, by -o", "render", *CUMULUS, *SMALL, "-o", "new.exr", "--spp", "4",
+                       "--resume", "new.exr")
+        self.assertEqual(self.read("state.exr"), state)
+
     def test_stops_at_the_noise(self):
         report = self.trace("sky.png", "--noise", "0.3")
         self.assertLessEqual(report["noise"], 0.3)

@@ -37,17 +37,22 @@ std::vector<weather::Layer> typicalLayers(const toml::table& root, double latitu
   return layers;
 }
 
-// The theme that the file names, or that wins over it.
+bool isBuiltIn(const std::string& theme) {
+  return std::find(kThemeNames.begin(), kThemeNames.end(), theme) != kThemeNames.end();
+}
+
+// The theme that the file names, or that wins over it; notes its file.
 std::optional<Theme> themeIn(const toml::table& root, const std::string& name,
-                             const std::optional<std::string>& wins) {
+                             const std::optional<std::string>& wins, std::optional<std::string>& file) {
+  if (wins && !isBuiltIn(*wins)) file = *wins;
   if (wins) return readTheme(*wins);
   const toml::node* node = root.get("theme");
   const auto theme = node ? node->value<std::string>() : std::nullopt;
   if (!theme) return std::nullopt;
   try {
-    return readTheme(std::find(kThemeNames.begin(), kThemeNames.end(), *theme) == kThemeNames.end()
-                         ? besideFile(name, *theme)
-                         : *theme);
+    if (isBuiltIn(*theme)) return readTheme(*theme);
+    file = besideFile(name, *theme);
+    return readTheme(*file);
   } catch (const ParameterError& e) {
     throw ParseError(name, static_cast<int>(node->source().begin.line),
                      static_cast<int>(node->source().begin.column), e.what());
@@ -67,7 +72,7 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   Scene& scene = file.scene;
   if (!latitudeDeg) latitudeDeg = root["place"]["latitude_deg"].value<double>();
   scene.layers = typicalLayers(root, latitudeDeg.value_or(scene.place.latitudeDeg));
-  const std::optional<Theme> start = themeIn(root, name, theme);
+  const std::optional<Theme> start = themeIn(root, name, theme, file.themeFile);
   if (start) apply(*start, scene);
   scene.sheets = startingSheets(root, name);
   TomlReader reader(root, name, documentParams<Scene>());

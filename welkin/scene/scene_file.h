@@ -20,6 +20,7 @@ namespace welkin::scene {
 struct SceneFile {
   Scene scene;
   std::vector<std::string> given;  // paths of the parameters that the file names: "seed", "output.width"
+  std::optional<std::string> themeFile;  // that a theme was read from; absent for built-in ones
 
   bool gives(std::string_view path) const;
 };
