@@ -63,6 +63,16 @@ void keep(const std::string& path, const reference::SkyFilm& film, const std::st
                      {state.width, state.height, std::move(state.planes), std::move(state.texts), false});
 }
 
+// The same where a failure must not take the picture along: what went wrong, empty for nothing.
+std::string tryToKeep(const std::string& path, const reference::SkyFilm& film, const std::string& scene) {
+  try {
+    keep(path, film, scene);
+    return {};
+  } catch (const IoError& e) {
+    return e.what();
+  }
+}
+
 // The picture; an EXR has what is known of it in further channels.
 void writePicture(const RenderSettings& settings, const reference::SkyFilm& film,
                   const scene::SkyState& state, double exposureEv) {
@@ -92,6 +102,7 @@ int runReference(const RenderSettings& settings) {
   if (settings.threads > 0) setThreadCount(settings.threads);
   const Clock::time_point begin = Clock::now();
   checkWritable(settings.out);
+  if (!settings.resume.empty()) checkWritable(settings.resume);
   RenderReport report;
   report.device = std::to_string(threadCount()) + " processor threads";
   ProgressLine progress;
@@ -117,6 +128,7 @@ int runReference(const RenderSettings& settings) {
   const Clock::time_point traced = Clock::now();
   Clock::time_point kept = traced;
   bool complete = true;
+  std::string lost;  // why the state could not be written
   try {
     while (!enough()) {
       throwIfInterrupted();
@@ -128,7 +140,9 @@ int runReference(const RenderSettings& settings) {
       progress.show(std::min(done, 1.0),
                     fmt::format("{} paths a pixel, noise {:.2f} %", film.samples(), 100.0 * error));
       if (!settings.resume.empty() && secondsSince(kept) > kKeepEveryS) {
-        keep(settings.resume, film, scene);
+        const bool wasFine = lost.empty();
+        lost = tryToKeep(settings.resume, film, scene);
+        if (wasFine && !lost.empty()) progress.warn(lost);
         kept = Clock::now();
       }
     }
@@ -137,12 +151,13 @@ int runReference(const RenderSettings& settings) {
   }
   const double seconds = secondsSince(traced);
   report.passes.push_back({"trace", 1e3 * seconds});
-  if (!settings.resume.empty())
-    keep(settings.resume, film, scene);
-  else if (!complete && film.samples() > 0) {
+  lost.clear();
+  if (!settings.resume.empty()) {
+    lost = tryToKeep(settings.resume, film, scene);
+  } else if (!complete && film.samples() > 0) {
     const std::string path = settings.out + ".resume.exr";
-    keep(path, film, scene);
-    progress.warn("interrupted; go on with --resume " + path);
+    lost = tryToKeep(path, film, scene);
+    if (lost.empty()) progress.warn("interrupted; go on with --resume " + path);
   }
   if (film.samples() == 0) return 130;
   const double exposureEv =
@@ -162,6 +177,7 @@ int runReference(const RenderSettings& settings) {
         .eventsPerSecond = seconds > 0.0 ? static_cast<double>(film.events() - firstEvents) / seconds : 0.0};
     io::writeTextFile(settings.report, reportJson(settings, report));
   }
+  if (!lost.empty()) throw IoError(lost + "; the picture is written, but cannot be gone on from");
   return complete ? 0 : 130;
 }
 

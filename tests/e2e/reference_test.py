@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`welkin render --renderer reference` of skies: pictures, what EXRs say of them, determinism, going on, and bad input."""
 import json
+import resource
 import signal
 import subprocess
 import time
@@ -58,6 +59,22 @@ class Reference(ProgramTest):
         self.fail_with(2, "--resume: new.exr is written already, by -o", "render", *CUMULUS, *SMALL, "-o", "new.exr", "--spp", "4",
                        "--resume", "new.exr")
         self.assertEqual(self.read("state.exr"), state)
+
+    def test_a_state_that_cannot_be_written(self):
+        sky = ("render", *CUMULUS, *SMALL, "--spp", "2")
+        # Before anything is traced.
+        self.fail_with(1, "cannot write none/state.exr: No such file or directory", *sky, "-o", "x.exr", "--resume", "none/state.exr")
+        self.fail_with(1, "cannot write /proc/state.exr: ", *sky, "-o", "x.exr", "--resume", "/proc/state.exr")
+        # At the end: the picture and the report are not lost with it.
+        limit = 4000  # bytes of a file, above those of a small PNG
+        command = [PROGRAM, *sky, "-o", "x.png", "--resume", "state.exr"]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, timeout=300,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr.count(b"\n"), 1)
+        self.assertIn(b"welkin: cannot write state.exr: File too large; the picture is written", done.stderr)
+        self.assertEqual(self.files(), ["x.png"])
+        self.succeed("info", "x.png")
 
     def test_stops_at_the_noise(self):
         report = self.trace("sky.png", "--noise", "0.3")
