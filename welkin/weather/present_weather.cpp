@@ -40,13 +40,17 @@ FogKind fogKind(std::string_view body) {
   return FogKind::kFog;
 }
 
+// Groups are made of codes of two letters: "SGRA" has no "GR".
+bool hasCode(std::string_view body, std::string_view code) {
+  for (std::size_t at = 0; at + 2 <= body.size(); at += 2)
+    if (body.substr(at, 2) == code) return true;
+  return false;
+}
+
 // The dominant one stands first in the group (WMO-No. 306, 15.8.9); hail is named wherever it is.
 const Phenomenon* dominant(std::string_view body) {
-  if (body.size() >= 2) {
-    for (const Phenomenon& p : std::span(kPhenomena).first(2)) {
-      if (body.find(p.code) != std::string_view::npos) return &p;
-    }
-  }
+  for (const Phenomenon& p : std::span(kPhenomena).first(2))
+    if (hasCode(body, p.code)) return &p;
   for (std::size_t at = 0; at + 2 <= body.size(); at += 2) {
     const auto it = std::find_if(kPhenomena.begin(), kPhenomena.end(),
                                  [&](const Phenomenon& p) { return p.code == body.substr(at, 2); });
@@ -70,12 +74,7 @@ PresentWeather readPresentWeather(std::span<const std::string> groups, double te
     if (body.starts_with('+')) intensity = Intensity::kHeavy;
     if (intensity != Intensity::kModerate) body.remove_prefix(1);
 
-    const auto has = [&](std::string_view code) {
-      for (std::size_t at = 0; at + 2 <= body.size(); at += 2) {
-        if (body.substr(at, 2) == code) return true;
-      }
-      return false;
-    };
+    const auto has = [&](std::string_view code) { return hasCode(body, code); };
     if (has("FG")) w.fog = fogKind(body);
     const bool storm = has("TS");
     w.thunder = w.thunder || storm;

@@ -218,9 +218,11 @@ TEST(FromMetar, Precipitation) {
   for (const Case& c : {Case{"RA", PrecipitationKind::kRain}, Case{"-SN", PrecipitationKind::kSnow},
                         Case{"DZ", PrecipitationKind::kDrizzle}, Case{"PL", PrecipitationKind::kIcePellets},
                         Case{"+TSRAGR", PrecipitationKind::kHail}, Case{"SHGS", PrecipitationKind::kHail},
-                        Case{"RASN", PrecipitationKind::kRain}, Case{"SNRA", PrecipitationKind::kSnow},
-                        Case{"BLSN", PrecipitationKind::kNone}, Case{"BR", PrecipitationKind::kNone},
-                        Case{"VCSH", PrecipitationKind::kNone}, Case{"FZRA", PrecipitationKind::kRain}}) {
+                        Case{"SGSN", PrecipitationKind::kSnow}, Case{"SGRA", PrecipitationKind::kSnow},
+                        Case{"-RAGS", PrecipitationKind::kHail}, Case{"RASN", PrecipitationKind::kRain},
+                        Case{"SNRA", PrecipitationKind::kSnow}, Case{"BLSN", PrecipitationKind::kNone},
+                        Case{"BR", PrecipitationKind::kNone}, Case{"VCSH", PrecipitationKind::kNone},
+                        Case{"FZRA", PrecipitationKind::kRain}}) {
     const Weather w = weatherOf("LSZH 211200Z 24005KT 5000 " + std::string(c.group) + " OVC030 05/04 Q1005");
     EXPECT_EQ(w.precipitation, c.kind) << c.group;
     EXPECT_EQ(w.precipitationMmPerH > 0.0, c.kind != PrecipitationKind::kNone) << c.group;
