@@ -10,7 +10,9 @@
 // What is promised:
 // - A group that cannot be read, is out of any possible range, or contradicts one read before gives an error
 // and no value;
-//   all the others are decoded as usual. There is never a guess.
+//   all the others are decoded as usual. There is never a guess. So weather, CB, TCU
+//   and cloud below 5,000 ft are errors beside CAVOK, cloud above a vertical visibility beside that, and a
+//   dew point more than a degree above the temperature.
 // - Element missing in the report (solidi, or the group is not there) means an empty value, and is no error,
 // except that a
 //   report must name its station and its time.

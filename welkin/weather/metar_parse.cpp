@@ -79,6 +79,20 @@ bool isStation(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return isLetter(c) || isDigit(c); });
 }
 
+// CAVOK is: no such cloud below 5,000 ft, no CB or TCU at any height (WMO-No. 306, FM 15, 15.10). An amount
+// that an instrument cannot tell says nothing against it.
+constexpr int kCavokFeet = 5000;
+bool deniesCavok(const MetarLayer& l) {
+  return l.type != MetarCloudType::kNone ||
+         (l.cover != MetarCover::kUnknown && l.baseFt && *l.baseFt < kCavokFeet);
+}
+
+// Rounded to whole degrees by two instruments, a dew point may exceed the temperature by one.
+constexpr double kDewPointRoundingC = 1.05;
+bool isPossible(const TemperatureGroup& t) {
+  return !t.temperatureC || !t.dewPointC || *t.dewPointC - *t.temperatureC <= kDewPointRoundingC;
+}
+
 class Reader {
  public:
   explicit Reader(std::string_view capitals) : groups_(capitals) {}
@@ -99,6 +113,11 @@ class Reader {
   }
   void failTwice(const Group& g, const char* what) { fail(g, "'" + shown(g.text) + "' is a second " + what); }
 
+  void failCavok(const Group& g) { fail(g, "'" + shown(g.text) + "' contradicts the CAVOK before it"); }
+  void failDewPoint(const Group& g) {
+    fail(g, "'" + shown(g.text) + "' has a dew point above the temperature");
+  }
+
   // The group after `g` belongs to it (a blank too many): one error for both, and neither is read.
   void failWithNext(const Group& g) {
     const Group second = groups_.next();
@@ -117,9 +136,13 @@ class Reader {
   void skipWindShear();
   void readRemarks();
   void setVisibility(const Group& g, const VisibilityGroup& v);
+  void setCavok(const Group& g);
+  void addWeather(const Group& g);
+  void addLayer(const Group& g, const MetarLayer& layer);
   void setTemperature(const Group& g, const TemperatureGroup& t);
   void setPressure(const Group& g, const PressureGroup& p);
   void setClear(const Group& g, MetarClear clear);
+  void setVerticalVisibility(const Group& g, const VerticalVisibilityGroup& v);
 
   Groups groups_;
   MetarResult result_;
@@ -334,13 +357,7 @@ bool Reader::readElement(const Group& g) {
     return true;
   }
   if (t == "CAVOK") {
-    if (misplaced()) return true;
-    if (visibilitySeen_ && metar().visibilityBound != MetarBound::kAtLeast) {
-      fail(g, "'CAVOK' contradicts the visibility before it");
-      return true;
-    }
-    metar().cavok = true;
-    setVisibility(g, {.metres = 10000.0, .bound = MetarBound::kAtLeast});
+    if (!misplaced()) setCavok(g);
     return true;
   }
   const auto handled = [&] {
@@ -369,16 +386,11 @@ bool Reader::readElement(const Group& g) {
     return handled();
   }
   if (isPresentWeather(t)) {
-    if (!misplaced()) metar().weather.emplace_back(t);
+    if (!misplaced()) addWeather(g);
     return handled();
   }
   if (const auto layer = readLayer(t)) {
-    if (misplaced()) return handled();
-    if (metar().clear != MetarClear::kNotSaid && layer->cover != MetarCover::kUnknown) {
-      fail(g, "'" + shown(t) + "' contradicts the group before it that says there is no such cloud");
-      return handled();
-    }
-    metar().layers.push_back(*layer);
+    if (!misplaced()) addLayer(g, *layer);
     return handled();
   }
   if (const auto clear = readClear(t)) {
@@ -386,13 +398,7 @@ bool Reader::readElement(const Group& g) {
     return handled();
   }
   if (const auto vv = readVerticalVisibility(t)) {
-    if (misplaced()) return handled();
-    if (metar().skyObscured) {
-      failTwice(g, "vertical visibility");
-      return handled();
-    }
-    metar().skyObscured = true;
-    metar().verticalVisibilityFt = vv->feet;
+    if (!misplaced()) setVerticalVisibility(g, *vv);
     return handled();
   }
   return false;
@@ -416,12 +422,78 @@ void Reader::setVisibility(const Group& g, const VisibilityGroup& v) {
   failTwice(g, "visibility");
 }
 
+void Reader::setCavok(const Group& g) {
+  const Metar& m = metar();
+  const char* denied = nullptr;
+  if (visibilitySeen_ && m.visibilityBound != MetarBound::kAtLeast)
+    denied = "visibility";
+  else if (std::any_of(m.weather.begin(), m.weather.end(), [](const auto& w) { return w != "//"; }))
+    denied = "weather";
+  else if (m.skyObscured || std::any_of(m.layers.begin(), m.layers.end(), deniesCavok))
+    denied = "cloud";
+  else if (m.clear == MetarClear::kNsc)
+    denied = "NSC";
+  if (denied != nullptr) {
+    fail(g, "'CAVOK' contradicts the " + std::string(denied) + " before it");
+    return;
+  }
+  metar().cavok = true;
+  setVisibility(g, {.metres = 10000.0, .bound = MetarBound::kAtLeast});
+}
+
+void Reader::addWeather(const Group& g) {
+  if (metar().cavok && g.text != "//") {
+    failCavok(g);
+    return;
+  }
+  metar().weather.emplace_back(g.text);
+}
+
+// A sky that is obscured hides what is above the vertical visibility.
+bool isHidden(const MetarLayer& l, const std::optional<int>& verticalVisibilityFt) {
+  return l.cover != MetarCover::kUnknown && l.baseFt && verticalVisibilityFt &&
+         *l.baseFt > *verticalVisibilityFt;
+}
+
+void Reader::addLayer(const Group& g, const MetarLayer& layer) {
+  const Metar& m = metar();
+  if (m.cavok && deniesCavok(layer))
+    failCavok(g);
+  else if (m.clear != MetarClear::kNotSaid && layer.cover != MetarCover::kUnknown)
+    fail(g, "'" + shown(g.text) + "' contradicts the group before it that says there is no such cloud");
+  else if (m.skyObscured && isHidden(layer, m.verticalVisibilityFt))
+    fail(g, "'" + shown(g.text) + "' is above the vertical visibility before it, where nothing is seen");
+  else
+    metar().layers.push_back(layer);
+}
+
+void Reader::setVerticalVisibility(const Group& g, const VerticalVisibilityGroup& v) {
+  Metar& m = metar();
+  if (m.skyObscured) {
+    failTwice(g, "vertical visibility");
+  } else if (m.cavok) {
+    failCavok(g);
+  } else if (m.clear != MetarClear::kNotSaid) {
+    fail(g, "'" + shown(g.text) + "' contradicts the group before it that says there is no such cloud");
+  } else if (std::any_of(m.layers.begin(), m.layers.end(),
+                         [&](const MetarLayer& l) { return isHidden(l, v.feet); })) {
+    fail(g, "'" + shown(g.text) + "' contradicts the cloud before it, which is seen above that height");
+  } else {
+    m.skyObscured = true;
+    m.verticalVisibilityFt = v.feet;
+  }
+}
+
 void Reader::setTemperature(const Group& g, const TemperatureGroup& t) {
   if (temperatureSeen_) {
     failTwice(g, "temperature");
     return;
   }
   temperatureSeen_ = true;
+  if (!isPossible(t)) {
+    failDewPoint(g);
+    return;
+  }
   metar().temperatureC = t.temperatureC;
   metar().dewPointC = t.dewPointC;
 }
@@ -439,6 +511,10 @@ void Reader::setPressure(const Group& g, const PressureGroup& p) {
 }
 
 void Reader::setClear(const Group& g, MetarClear clear) {
+  if (metar().cavok && clear == MetarClear::kNsc) {
+    failCavok(g);  // NSC is for where CAVOK is not
+    return;
+  }
   if (metar().clear != MetarClear::kNotSaid && metar().clear != clear) {
     failTwice(g, "statement about a clear sky");
     return;
@@ -464,7 +540,9 @@ void Reader::readRemarks() {
     const auto contradicts = [](const std::optional<double>& body, const std::optional<double>& remark) {
       return body && remark && std::abs(*body - *remark) > 1.05;
     };
-    if (contradicts(m.temperatureC, exact->temperatureC) || contradicts(m.dewPointC, exact->dewPointC)) {
+    if (!isPossible(*exact))
+      failDewPoint(g);
+    else if (contradicts(m.temperatureC, exact->temperatureC) || contradicts(m.dewPointC, exact->dewPointC)) {
       fail(g, "'" + shown(g.text) + "' contradicts the temperatures in the body");
     } else {
       if (exact->temperatureC) m.temperatureC = exact->temperatureC;

@@ -102,6 +102,47 @@ TEST(MetarReport, ContradictionsAreErrors) {
       << "an instrument may see none and not know of CB";
 }
 
+TEST(MetarReport, CavokTakesNoCloudOrWeatherThatItRulesOut) {
+  const auto columns = [](const std::string& sky) {
+    return errorColumns("EDDM 211750Z 24010KT " + sky + " 10/05 Q1010");
+  };
+  EXPECT_EQ(columns("CAVOK BKN010"), (Columns{28}));
+  EXPECT_EQ(columns("CAVOK TSRA OVC002CB"), (Columns{28, 33}));
+  EXPECT_EQ(columns("CAVOK TSRA NSC"), (Columns{28, 33}));
+  EXPECT_EQ(columns("CAVOK FEW060TCU"), (Columns{28}));
+  EXPECT_EQ(columns("CAVOK VV003"), (Columns{28}));
+  EXPECT_EQ(columns("TSRA CAVOK"), (Columns{27}));
+  EXPECT_EQ(columns("BKN010 CAVOK"), (Columns{29}));
+  EXPECT_EQ(columns("NSC CAVOK"), (Columns{26}));
+  EXPECT_FALSE(parseMetar("EDDM 211750Z 24010KT BKN010 CAVOK 10/05 Q1010").metar.cavok);
+  EXPECT_TRUE(parseMetar("EDDM 211750Z 24010KT CAVOK BKN010 10/05 Q1010").metar.layers.empty());
+  // What it allows.
+  for (const char* sky : {"CAVOK", "CAVOK //////", "CAVOK //", "CAVOK SCT050", "CAVOK FEW200", "CAVOK SKC",
+                          "9999 CAVOK", "CAVOK R25/910050"})
+    EXPECT_EQ(columns(sky), Columns{}) << sky;
+}
+
+TEST(MetarReport, NoCloudIsSeenAboveAVerticalVisibility) {
+  const auto columns = [](const std::string& sky) {
+    return errorColumns("EDDM 211750Z 24010KT 0300 FG " + sky + " 10/10 Q1010");
+  };
+  EXPECT_EQ(columns("BKN010 VV001"), (Columns{37}));
+  EXPECT_EQ(columns("VV001 BKN010"), (Columns{36}));
+  EXPECT_EQ(columns("SKC VV001"), (Columns{34}));
+  for (const char* sky : {"VV001", "VV///", "FEW001 VV003", "BKN001 VV///", "///010 VV001"})
+    EXPECT_EQ(columns(sky), Columns{}) << sky;
+}
+
+TEST(MetarReport, DewPointsAboveTheTemperatureAreErrors) {
+  const auto r = parseMetar("EDDM 211750Z 24010KT 9999 10/12 Q1010");
+  ASSERT_EQ(r.errors.size(), 1u);
+  EXPECT_EQ(r.errors[0].column, 27u);
+  EXPECT_FALSE(r.metar.temperatureC);
+  EXPECT_FALSE(r.metar.dewPointC);
+  EXPECT_TRUE(parseMetar("EDDM 211750Z 24010KT 0300 FG M06/M05 Q1010").ok()) << "two instruments, rounded";
+  EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 10SM A2992 RMK T01000120"), (Columns{37}));
+}
+
 TEST(MetarReport, CloudAndWeatherBehindThePressureAreNotRead) {
   const auto r = parseMetar("SVBS 262100Z 25006KT 9999 28/24 Q1011 TS FEW020");
   EXPECT_TRUE(r.metar.weather.empty());
