@@ -216,8 +216,10 @@ int runMetarCommand(const std::vector<std::string>& reports, const std::optional
       if (!opened) throw IoError("cannot read " + *file);
     }
     std::istream& in = *file == "-" ? std::cin : opened;
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // editors put it before UTF-8
     std::string line;
-    while (std::getline(in, line)) {
+    for (bool atBegin = true; std::getline(in, line); atBegin = false) {
+      if (atBegin && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
       if (line.ends_with('\r')) line.pop_back();
       const auto first = line.find_first_not_of(" \t");
       if (first == std::string::npos || line[first] == '#') continue;

@@ -88,6 +88,8 @@ class Metar(ProgramTest):
         self.write("reports.txt", self.REPORT + "\n\n" + "LSZH 211220Z 24008KT CAVOK 22/12 Q1018\n")
         lines = self.succeed("metar", "--json", "--file", "reports.txt").splitlines()
         self.assertEqual([json.loads(line)["station"] for line in lines], ["KMRY", "LSZH"])
+        (self.folder / "marked.txt").write_bytes(b"\xef\xbb\xbf" + (self.folder / "reports.txt").read_bytes())
+        self.assertEqual(self.succeed("metar", "--json", "--file", "marked.txt").splitlines(), lines)
 
     def test_empty_report(self):
         done = self.run_program("metar", "--json", "")

@@ -267,17 +267,20 @@ bool Reader::readSupplement(const Group& g) {
          isOldRunwayState(g.text) || isNationalSupplement(g.text);
 }
 
-// WS R06, WS RWY14, WS ALL RWY, WS TKOF RWY20, WS LDG RWY02
+// WS R06, WS RWY14, WS RWY 14, WS ALL RWY, WS TKOF RWY20, WS LDG RWY02
 void Reader::skipWindShear() {
   static constexpr std::array<std::string_view, 5> kWords = {"ALL", "RWY", "RWYS", "TKOF", "LDG"};
+  bool afterRunway = false;  // its number may be the next group
   for (Group g = groups_.peek(); g; g = groups_.peek()) {
-    if (std::find(kWords.begin(), kWords.end(), g.text) == kWords.end()) {
+    const bool isWord = std::find(kWords.begin(), kWords.end(), g.text) != kWords.end();
+    if (!isWord) {
       Cursor c(g.text);
-      if (!c.eat("RWY") && !c.eat('R')) return;
+      if (!c.eat("RWY") && !c.eat('R') && !afterRunway) return;
       if (!c.digits(2)) return;
       if (!c.eat('L') && !c.eat('R')) c.eat('C');
       if (!c.done()) return;
     }
+    afterRunway = isWord && g.text.starts_with("RWY");
     groups_.next();
   }
 }

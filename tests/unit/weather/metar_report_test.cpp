@@ -102,6 +102,16 @@ TEST(MetarReport, ContradictionsAreErrors) {
       << "an instrument may see none and not know of CB";
 }
 
+TEST(MetarReport, WindShearNamesRunwaysInManyWays) {
+  for (const char* runway :
+       {"R06", "RWY14", "RWY 14", "RWY 07L", "ALL RWY", "TKOF RWY20", "LDG RWY 02", "RWYS 14"})
+    EXPECT_TRUE(
+        parseMetar("EGSS 231120Z 12008KT 9999 FEW020 15/14 Q1001 WS " + std::string(runway) + " NOSIG").ok())
+        << runway;
+  EXPECT_EQ(errorColumns("EGSS 231120Z 12008KT 9999 FEW020 15/14 Q1001 WS RWY 14 14"), (Columns{56}));
+  EXPECT_EQ(errorColumns("EGSS 231120Z 12008KT 9999 FEW020 15/14 Q1001 WS RWY 07X"), (Columns{53}));
+}
+
 TEST(MetarReport, CavokTakesNoCloudOrWeatherThatItRulesOut) {
   const auto columns = [](const std::string& sky) {
     return errorColumns("EDDM 211750Z 24010KT " + sky + " 10/05 Q1010");
