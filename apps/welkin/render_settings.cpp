@@ -250,7 +250,9 @@ RenderSettings renderSettings(const RenderArgs& a) {
   try {
     scene::validate(s);
   } catch (const ParameterError& e) {
-    if (a.size || a.projection || !a.scene) throw UsageError(e.what());
+    const bool byFlags =
+        a.size || a.projection || a.time || a.at || a.frames || a.fps || a.speed || a.metaballsAs;
+    if (byFlags || !a.scene) throw UsageError(e.what());
     throw ParameterError(*a.scene + ": " + e.what());
   }
   checkSlab(r, a);

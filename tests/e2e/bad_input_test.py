@@ -68,6 +68,15 @@ class Flags(ProgramTest):
         self.refuse("expected gpu or reference", "--renderer", "cpu")
         self.refuse("--spp belongs to the reference renderer", "--spp", "16")
 
+    def test_years(self):
+        last = ("--time", "2100-12-31T23:59:59Z")
+        self.refuse("the picture is of 2101-12-31T23:59:59Z; expected the years 1900 to 2100", *last, "--at", "31536000")
+        self.refuse("the picture is of 1899-12-31T", "--time", "1900-01-01T00:00:00Z", "--at=-5")
+        self.fail_with(2, "the last picture is of 2101-01-01T00:00:0", "render", *last, "-o", "x_%d.png", "--frames", "30",
+                       "--fps", "24", "--speed", "1")
+        self.write("s.toml", 'time = "2100-12-31T23:59:59Z"\nat_s = 60\n')
+        self.fail_with(1, "s.toml: the picture is of 2101-01-01T00:00:59Z", "render", "s.toml", "-o", "x.png")
+
     def test_frames_need_a_number(self):
         self.refuse("x.png: 10 frames need a place for their number", "--frames", "10")
 

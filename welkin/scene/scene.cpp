@@ -126,6 +126,21 @@ void describe(Scene& s, ParamVisitor& v) {
   v.list({"slab_column", "", "columns of a slab that is not homogeneous, from the west"}, s.slab.columns);
 }
 
+namespace {
+
+// Of the first and the last picture, which at_s and speed may lead far from `time`.
+void validateTimes(const Scene& s) {
+  const double lastS = static_cast<double>(s.output.frames - 1) * s.output.speed / s.output.fps;
+  for (const double afterS : {0.0, lastS}) {
+    const UtcTime t = addSeconds(s.time, s.atS + afterS);
+    if (t.year < 1900 || t.year > 2100)
+      throw ParameterError(std::string(afterS == 0.0 ? "the picture" : "the last picture") + " is of " +
+                           formatUtcTime(t) + "; expected the years 1900 to 2100");
+  }
+}
+
+}  // namespace
+
 void validate(const Scene& s) {
   const std::int64_t w = s.output.width, h = s.output.height;
   const std::string size = std::to_string(w) + "x" + std::to_string(h);
@@ -156,6 +171,7 @@ void validate(const Scene& s) {
           "and "
           "albedo 1, or metaballs_as splats");
   }
+  validateTimes(s);
   validate(s.skyBox);
   validate(s.slab);
   if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)

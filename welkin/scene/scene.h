@@ -97,8 +97,8 @@ struct Scene {
 };
 void describe(Scene& s, ParamVisitor& v);
 
-// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases. Throws
-// ParameterError.
+// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases, the years of all
+// pictures. Throws ParameterError.
 void validate(const Scene& s);
 
 // The technique that draws a layer of the scene's weather: its own, or the scene's.

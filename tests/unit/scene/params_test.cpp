@@ -159,6 +159,24 @@ TEST(Json, HoldsTheWholeScene) {
   }
 }
 
+TEST(Validate, RefusesPicturesOfOtherCenturies) {
+  Scene s;
+  s.time = parseUtcTime("2100-12-31T23:59:00Z");
+  s.atS = 59.0;
+  EXPECT_NO_THROW(validate(s));
+  s.atS = 60.0;
+  EXPECT_THROW(validate(s), ParameterError);
+  s.atS = 0.0;
+  s.output.frames = 61;
+  s.output.fps = s.output.speed = 1.0;
+  EXPECT_THROW(validate(s), ParameterError);
+  s.output.frames = 60;
+  EXPECT_NO_THROW(validate(s));
+  s.time = parseUtcTime("1900-01-01T00:00:00Z");
+  s.output.speed = -1.0;
+  EXPECT_THROW(validate(s), ParameterError);
+}
+
 TEST(Validate, RefusesWhatNoSingleRangeCan) {
   Scene s;
   EXPECT_NO_THROW(validate(s));
