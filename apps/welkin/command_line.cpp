@@ -187,7 +187,7 @@ void describeOutput(CLI::App* app, OutputArgs& a, const char* files) {
 }
 
 void describeNoise(CLI::App* app, NoiseArgs& a) {
-  describeOutput(app, a.output, "picture or volume .dds .raw, picture .png .exr, volume .vdb");
+  describeOutput(app, a.output, "picture or volume .dds .raw, picture .png .exr .hdr, volume .vdb");
   add(app, "--size", a.size, "WxH[xD]", "texels; three numbers make a volume");
   std::string presets;
   for (const std::string_view name : kEnumNames<field::ThesisTexture>)

@@ -63,7 +63,8 @@ int run(const PrintText& print) {
 
 int run(const MetarArgs& args) {
   if (args.reports.empty() && !args.file) throw UsageError("metar: expected a report or --file F");
-  return runMetarCommand(args.reports, args.file, args.json);
+  runMetarCommand(args.reports, args.file, args.json);
+  return 0;
 }
 
 int run(const SunArgs& args) {

@@ -199,16 +199,20 @@ std::string metarToText(const MetarResult& r) {
   return s;
 }
 
-int runMetarCommand(const std::vector<std::string>& reports, const std::optional<std::string>& file,
-                    bool json) {
-  bool anyError = false;
-  const auto show = [&](std::string_view report) {
+void runMetarCommand(const std::vector<std::string>& reports, const std::optional<std::string>& file,
+                     bool json) {
+  std::size_t count = 0, wrong = 0;
+  std::string firstError;
+  // `place` of the report, before its column.
+  const auto show = [&](std::string_view report, const std::string& place) {
     const MetarResult r = weather::parseMetar(report);
     const std::string out = json ? metarToJson(report, r) + "\n" : metarToText(r);
     std::fwrite(out.data(), 1, out.size(), stdout);
-    anyError = anyError || !r.ok();
+    ++count;
+    if (r.ok() || wrong++ > 0) return;
+    firstError = fmt::format("{}{}: {}", place, r.errors.front().column, r.errors.front().reason);
   };
-  for (const auto& report : reports) show(report);
+  for (const auto& report : reports) show(report, fmt::format("report {}, column ", count + 1));
   if (file) {
     std::ifstream opened;
     if (*file != "-") {
@@ -218,16 +222,19 @@ int runMetarCommand(const std::vector<std::string>& reports, const std::optional
     std::istream& in = *file == "-" ? std::cin : opened;
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // editors put it before UTF-8
     std::string line;
-    for (bool atBegin = true; std::getline(in, line); atBegin = false) {
-      if (atBegin && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+    for (int number = 1; std::getline(in, line); ++number) {
+      if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
       if (line.ends_with('\r')) line.pop_back();
       const auto first = line.find_first_not_of(" \t");
       if (first == std::string::npos || line[first] == '#') continue;
-      show(line);
+      show(line, fmt::format("{}:{}:", *file == "-" ? "standard input" : *file, number));
     }
     if (in.bad()) throw IoError("cannot read " + *file);
   }
-  return anyError ? 1 : 0;
+  if (wrong == 0) return;
+  if (std::fflush(stdout) != 0) throw IoError("standard output cannot be written");
+  if (count > 1) firstError += fmt::format("; {} of {} reports have errors", wrong, count);
+  throw ParameterError(firstError);
 }
 
 }  // namespace welkin::app

@@ -27,9 +27,9 @@ std::string metarToJson(std::string_view report, const weather::MetarResult& res
 std::string metarToText(const weather::MetarResult& result);
 
 // Prints every report of `reports`, then every line of `file` ("-": standard input); empty lines and lines
-// that start with # are passed over in files. Returns the exit code: 0, or 1 when any report had an error.
-// Throws IoError for a file that cannot be read.
-int runMetarCommand(const std::vector<std::string>& reports, const std::optional<std::string>& file,
-                    bool json);
+// that start with # are passed over in files. Throws ParameterError that names the first report with an
+// error, after all have been printed; IoError for a file that cannot be read.
+void runMetarCommand(const std::vector<std::string>& reports, const std::optional<std::string>& file,
+                     bool json);
 
 }  // namespace welkin::app

@@ -107,6 +107,17 @@ class Metar(ProgramTest):
             self.assertEqual(done.returncode, 1, noise)
             self.assertIn("error", json.loads(done.stdout), noise)
 
+    def test_errors(self):
+        self.fail_with(1, "welkin: report 1, column 5: expected a day and time such as 211753Z\n", "metar", "KABC")
+        self.fail_with(1, "welkin: report 2, column 14: 'Q10' is not", "metar", self.REPORT, "KMRY 211753Z Q10", "KABC")
+        self.fail_with(1, "; 2 of 3 reports have errors\n", "metar", "--json", self.REPORT, "KMRY 211753Z Q10", "KABC")
+        self.write("reports.txt", "# two\n" + self.REPORT + "\n\nKABC\n")
+        self.fail_with(1, "welkin: reports.txt:4:5: expected a day and time such as 211753Z; 1 of 2", "metar", "--file",
+                       "reports.txt")
+        done = self.run_program("metar", self.REPORT, "KMRY 211753Z Q10")
+        self.assertIn(b"KMRY, day 21 at 17:53 UTC\n  wind", done.stdout)
+        self.assertIn(b"  error         column 14: ", done.stdout)
+
     def test_mistakes(self):
         self.fail_with(2, "metar: expected a report", "metar")
         self.fail_with(1, "missing.txt", "metar", "--file", "missing.txt")
