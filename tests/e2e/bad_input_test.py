@@ -34,8 +34,11 @@ class SceneFiles(ProgramTest):
         self.refuse("[output]\nwidth = 0\n", "2:9: width is 0; expected 1 to 16384 pixels")
 
     def test_layer_upside_down(self):
-        self.write("s.toml", '[[layer]]\ngenus = "cumulus"\nbase_m = 2000\ntop_m = 1000\n')
-        self.fail_with(1, "s.toml: layer of cumulus: top_m must be above base_m", "render", "s.toml", "-o", "x.png")
+        self.refuse('[[layer]]\ngenus = "cirrus"\n[[layer]]\ngenus = "cumulus"\nbase_m = 2000\ntop_m = 1000\n',
+                    "6:9: layer of cumulus: top_m must be above base_m")
+
+    def test_reports(self):
+        self.refuse('seed = 2\nmetar = "LSZH 211220Z Q10"\n', "2:9: metar: column 14 of the report: 'Q10' is not")
 
     def test_missing_and_folder(self):
         self.fail_with(1, "none.toml: cannot be opened: No such file", "render", "none.toml", "-o", "x.png")

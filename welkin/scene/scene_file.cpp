@@ -10,6 +10,7 @@
 #include "welkin/scene/theme.h"
 #include "welkin/scene/toml_reader.h"
 #include "welkin/scene/toml_writer.h"
+#include "welkin/weather/metar.h"
 
 namespace welkin::scene {
 namespace {
@@ -54,8 +55,56 @@ std::optional<Theme> themeIn(const toml::table& root, const std::string& name,
     file = besideFile(name, *theme);
     return readTheme(*file);
   } catch (const ParameterError& e) {
-    throw ParseError(name, static_cast<int>(node->source().begin.line),
-                     static_cast<int>(node->source().begin.column), e.what());
+    throw errorAt(*node, name, e.what());
+  }
+}
+
+// The ranges of what the file gives are checked by now: only base and top can be at odds. The one that it
+// does not give is no key that a message may name.
+void validateLayers(const std::vector<weather::Layer>& layers, const toml::table& root,
+                    const std::string& name) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const weather::Layer& layer = layers[i];
+    const toml::table& table = *root["layer"][i].as_table();
+    const toml::node *base = table.get("base_m"), *top = table.get("top_m");
+    const std::string genus(kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)]);
+    try {
+      weather::validate(layer);
+    } catch (const ParameterError& e) {
+      if (base && !top)
+        throw errorAt(*base, name,
+                      "base_m is " + numberText(layer.baseM) + ", too high for the typical thickness of " +
+                          genus + ", " + numberText(layer.topM - layer.baseM) +
+                          " m; expected a lower one, or a top_m");
+      if (top && !base)
+        throw errorAt(*top, name,
+                      "top_m is " + numberText(layer.topM) + "; expected it above the typical base of " +
+                          genus + ", " + numberText(layer.baseM) + " m, or a base_m");
+      throw errorAt(top ? *top : table, name, e.what());
+    }
+  }
+}
+
+// A report that the file gives.
+void validateReport(const Scene& scene, const toml::table& root, const std::string& name) {
+  if (!scene.metar) return;
+  const weather::MetarResult result = weather::parseMetar(*scene.metar);
+  if (!result.ok())
+    throw errorAt(*root.get("metar"), name,
+                  "metar: column " + std::to_string(result.errors.front().column) +
+                      " of the report: " + result.errors.front().reason);
+  if (result.metar.nil)
+    throw errorAt(*root.get("metar"), name, "metar: the report is NIL, which says nothing about the weather");
+}
+
+// Keys of a table that are at odds.
+template <class T>
+void validateTable(const T& group, const toml::table& root, std::string_view key, const std::string& name) {
+  try {
+    validate(group);
+  } catch (const ParameterError& e) {
+    const toml::node* node = root.get(key);
+    throw errorAt(node ? *node : root, name, e.what());
   }
 }
 
@@ -81,7 +130,12 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   file.given = std::move(reader.given);
 
   scene.theme.reset();
-  finishSheets(scene.sheets, name);
+  validateReport(scene, root, name);
+  validateLayers(scene.layers, root, name);
+  finishSheets(scene.sheets, root, name);
+  validateEach(scene.metaballs, root, "metaballs", name);
+  validateTable(scene.skyBox, root, "sky_box", name);
+  validateTable(scene.slab, root, scene.slab.opticalDepth ? "slab" : "slab_column", name);
   for (MetaballCloud& cloud : scene.metaballs)
     if (!cloud.file.empty()) cloud.file = besideFile(name, cloud.file);
   if (start) scene.sheets.insert(scene.sheets.begin(), start->sheets.begin(), start->sheets.end());

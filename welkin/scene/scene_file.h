@@ -28,7 +28,8 @@ struct SceneFile {
 // latitudeDeg: of the place when something else than the file decides it, for what is typical of a layer
 // there. theme: a name or path that wins over the file's `theme`. Throws IoError when the file cannot be
 // read; ParseError with file:line:column for bad TOML, an unknown key (naming the nearest known one), a value
-// of the wrong type and a value outside its range; what readTheme() throws. validate() is left to the caller.
+// of the wrong type, a value outside its range, and keys of one table that are at odds; what readTheme()
+// throws. The rest of validate() is left to the caller.
 //
 // Presets and themes are replaced by what they stand for, and the paths of files, which are relative to the
 // scene file, by paths from here.

@@ -22,8 +22,7 @@ std::vector<Sheet> startingSheets(const toml::table& root, const std::string& na
       try {
         sheet = sheetOf(sheetPreset(*preset));
       } catch (const ParameterError& e) {
-        throw ParseError(name, static_cast<int>(node->source().begin.line),
-                         static_cast<int>(node->source().begin.column), e.what());
+        throw errorAt(*node, name, e.what());
       }
       // The one takes the other's place, unless the file gives both.
       if (table->contains("exponent")) sheet.density.reset();
@@ -33,7 +32,8 @@ std::vector<Sheet> startingSheets(const toml::table& root, const std::string& na
   return sheets;
 }
 
-void finishSheets(std::vector<Sheet>& sheets, const std::string& name) {
+void finishSheets(std::vector<Sheet>& sheets, const toml::table& root, const std::string& name) {
+  validateEach(sheets, root, "sheet", name);
   for (Sheet& sheet : sheets) {
     sheet.preset.reset();
     if (sheet.texture) sheet.texture = besideFile(name, *sheet.texture);

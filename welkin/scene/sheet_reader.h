@@ -17,7 +17,7 @@ std::string besideFile(const std::string& name, const std::string& path);
 // Mistakes are left for the reader, but for names that are no preset's: ParseError.
 std::vector<Sheet> startingSheets(const toml::table& root, const std::string& name);
 
-// After it: nothing is left of presets, and paths are from here.
-void finishSheets(std::vector<Sheet>& sheets, const std::string& name);
+// After it: they are valid (ParseError), nothing is left of presets, and paths are from here.
+void finishSheets(std::vector<Sheet>& sheets, const toml::table& root, const std::string& name);
 
 }  // namespace welkin::scene

@@ -104,7 +104,7 @@ Theme readTheme(const std::string& nameOrPath) {
   TomlReader reader(root, nameOrPath, documentParams<Theme>());
   describe(theme, reader);
   reader.finish();
-  finishSheets(theme.sheets, nameOrPath);
+  finishSheets(theme.sheets, root, nameOrPath);
   return theme;
 }
 

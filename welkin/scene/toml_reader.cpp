@@ -27,6 +27,11 @@ toml::table parseToml(std::string_view text, const std::string& name) {
   }
 }
 
+ParseError errorAt(const toml::node& node, const std::string& name, const std::string& message) {
+  const toml::source_position& at = node.source().begin;
+  return {name, static_cast<int>(at.line), static_cast<int>(at.column), message};
+}
+
 std::string kindOf(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:

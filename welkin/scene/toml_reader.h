@@ -33,6 +33,21 @@ std::string readText(const std::string& path, const std::string& expected);
 // Throws ParseError with file:line:column.
 toml::table parseToml(std::string_view text, const std::string& name);
 
+// What is wrong with a node of the file `name`, with its place.
+ParseError errorAt(const toml::node& node, const std::string& name, const std::string& message);
+
+// What no single range can say of each element of the list `key`: validate() with the element's place, as
+// ParseError.
+template <class T>
+void validateEach(const std::vector<T>& elements, const toml::table& root, std::string_view key,
+                  const std::string& name) {
+  for (std::size_t i = 0; i < elements.size(); ++i) try {
+      validate(elements[i]);
+    } catch (const ParameterError& e) {
+      throw errorAt(*root[key][i].node(), name, e.what());
+    }
+}
+
 // "a whole number": what a message calls it.
 std::string kindOf(const toml::node& node);
 

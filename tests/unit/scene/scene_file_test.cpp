@@ -83,7 +83,7 @@ TEST(SceneFile, RoundTrips) {
   Scene s;
   s.time = {2031, 12, 24, 23, 59, 58.25};
   s.atS = -12.5;
-  s.metar = "text with \"quotes\", a tab\t and a backslash \\";
+  s.metar = "LSZH 211220Z 24008KT CAVOK RMK text with \"quotes\", a tab\t and a backslash \\";
   s.visibilityM = 12345.678;
   s.ground.albedo = {1.0 / 3.0, 0.2, 0.0};
   s.camera.headingDeg = 359.99;
@@ -225,6 +225,32 @@ top_m = 1000
   const Scene polar =
       parseScene("[place]\nlatitude_deg = 10\n[[layer]]\ngenus = \"cirrus\"", "s", 80.0).scene;
   EXPECT_EQ(polar.layers[0].baseM, weather::typicalLayer(weather::Genus::kCirrus, 80).baseM);
+}
+
+TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
+  const auto problem = [](const std::string& text) -> std::string {
+    try {
+      parseScene(text, "s.toml");
+    } catch (const ParseError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto expect = [&](const std::string& text, const std::string& place, const std::string& part) {
+    EXPECT_TRUE(problem(text).starts_with("s.toml:" + place + ": ")) << problem(text);
+    EXPECT_NE(problem(text).find(part), std::string::npos) << problem(text);
+  };
+  expect("[[layer]]\n[[layer]]\nbase_m = 2000\ntop_m = 1000\n", "4:9", "top_m must be above base_m");
+  // Only what the file gives is named as wrong.
+  expect("[[layer]]\ngenus = \"cirrus\"\nbase_m = 25000\n", "3:10", "base_m is 25000, too high");
+  expect("[[layer]]\ngenus = \"cirrus\"\ntop_m = 100\n", "3:9",
+         "top_m is 100; expected it above the typical base");
+  expect("[[sheet]]\n[[sheet]]\ndensity = 0.9\nexponent = 0.1\n", "2:1", "density and exponent");
+  expect("seed = 2\n[[metaballs]]\nscale = 2\n", "2:1", "metaballs have no file");
+  expect("seed = 2\n[sky_box]\nstrip = \"a.png\"\npx = \"b.png\"\n", "2:1", "a strip and faces");
+  expect("[slab]\noptical_depth = 2\n[[slab_column]]\n", "1:1", "an optical_depth and columns");
+  expect("seed = 2\nmetar = \"LSZH 211220Z 24008KT Q10\"\n", "2:9", "metar: column 22 of the report: 'Q10'");
+  expect("metar = \"LSZH 211220Z NIL\"\n", "1:9", "NIL");
 }
 
 TEST(SceneFile, MissingFilesAndFoldersAreIoErrors) {

@@ -101,7 +101,8 @@ TEST_F(SkyBoxTest, ItsPathsAreThoseOfTheSceneFile) {
   const Scene s = parseScene("[sky_box]\nstrip = \"b.exr\"\naxes = \"y_up\"\n", "some/where/s.toml").scene;
   EXPECT_EQ(s.skyBox.strip, "some/where/b.exr");
   EXPECT_EQ(s.skyBox.axes, BoxAxes::kYUp);
-  EXPECT_EQ(parseScene("[sky_box]\npx = \"/b.png\"\n", "some/s.toml").scene.skyBox.px, "/b.png");
+  EXPECT_EQ(parseScene("[sky_box]\nstrip = \"/b.png\"\n", "some/s.toml").scene.skyBox.strip, "/b.png");
+  EXPECT_THROW(parseScene("[sky_box]\npx = \"b.png\"\n", "some/s.toml"), ParseError);  // one of six
 }
 
 }  // namespace
