@@ -15,8 +15,10 @@
 #include "report.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
+#include "welkin/core/random.h"
 #include "welkin/io/atomic_file.h"
 #include "welkin/io/exr.h"
+#include "welkin/io/input_file.h"
 #include "welkin/reference/sky_film.h"
 #include "welkin/render/display.h"
 #include "welkin/scene/param_json.h"
@@ -35,6 +37,30 @@ double secondsSince(Clock::time_point begin) {
 }
 
 const char* const kSceneKey = "welkin_scene";
+
+// Of a file's bytes, as text.
+std::string contentHash(const std::string& path) {
+  io::InputFile file(path);
+  std::uint64_t hash = hashOf(file.size());
+  while (file.left() > 0) {
+    std::uint64_t word = 0;
+    file.read(&word, std::min<std::uint64_t>(file.left(), sizeof word));
+    hash = joinHashes(hash, word);
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+// What paths depend on: files by what is in them, and nothing of what is done with the light afterwards.
+std::string tracedScene(scene::Scene s) {
+  const scene::Output unused;
+  s.output.exposureEv = unused.exposureEv;
+  s.output.quality = unused.quality;
+  s.output.flare = unused.flare;
+  s.output.fps = unused.fps;
+  s.output.speed = unused.speed;
+  for (scene::MetaballCloud& cloud : s.metaballs) cloud.file = contentHash(cloud.file);
+  return scene::toJson(s);
+}
 
 // Goes on from a file that is there, if it is of the same scene.
 reference::SkyFilm openFilm(const RenderSettings& settings, const std::string& scene) {
@@ -112,8 +138,7 @@ int runReference(const RenderSettings& settings) {
   for (const std::string& warning : report.state.warnings) progress.warn(warning);
   const reference::SkyTracer tracer(report.state, {.seed = static_cast<std::uint64_t>(settings.scene.seed),
                                                    .droplets = settings.scene.droplets});
-  // What paths depend on.
-  const std::string scene = scene::toJson(settings.scene);
+  const std::string scene = tracedScene(settings.scene);
   reference::SkyFilm film = openFilm(settings, scene);
 
   const double noise = settings.noise.value_or(settings.spp ? 0.0 : kDefaultNoise);

@@ -50,6 +50,21 @@ class Reference(ProgramTest):
         (self.folder / "broken.exr").write_bytes(self.read("state.exr")[:400])
         self.fail_with(1, "broken.exr", "render", *CUMULUS, *SMALL, "-o", "x.exr", "--spp", "8", "--resume", "broken.exr")
 
+    def test_goes_on_for_the_same_light_alone(self):
+        def ball(radius):
+            self.write("b.json", json.dumps({"welkin": "metaballs", "balls": [{"center_m": [0, 0, 0], "radius_m": radius, "density": 1}]}))
+        ball(400)
+        self.write("s.toml", '[[metaballs]]\nfile = "b.json"\n[output]\nquality = "high"\n')
+        sky = ("render", "s.toml", *SMALL, "-o", "x.exr", "--resume", "state.exr", "--spp")
+        self.succeed(*sky, "1")
+        # What is done with the light afterwards, and how files are spelt, changes no path.
+        for flags in (("--exposure", "14"), ("--quality", "low"), ("--fps", "30"), ("--speed", "2")):
+            self.succeed(*sky, "1", *flags)
+        self.write("s.toml", '[[metaballs]]\nfile = "./b.json"\n[output]\nflare = 0.01\n')
+        self.succeed(*sky, "2")
+        ball(401)
+        self.fail_with(1, "of another scene", *sky, "3")
+
     def test_refuses_to_write_over_what_is_traced_so_far(self):
         self.trace("part.exr", "--spp", "2", "--resume", "state.exr")
         state = self.read("state.exr")
