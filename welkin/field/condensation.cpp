@@ -115,7 +115,12 @@ Condensation withCover(Condensation law, double quantile, double visible) {
         "cloud never gets as opaque as one step of the file's values; expected a smaller density or "
         "exponent, "
         "or a greater sharpness, scale or bias");
-  law.threshold = quantile - excess;
+  law.threshold = quantile;
+  if (excess == 0.0) return law;
+  // Half a float higher: samples that are the quantile are not above it.
+  const auto at = static_cast<float>(quantile);
+  const double next = std::nextafter(at, std::numeric_limits<float>::infinity());
+  law.threshold += 0.5 * (next - static_cast<double>(at)) - excess;
   return law;
 }
 

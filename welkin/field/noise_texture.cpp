@@ -103,10 +103,12 @@ void NoiseTexture::fillNoise(int first, int count, std::span<float> out) const {
   noise_.fill(noise::Grid::tile(size_), box, out);
   if (params_.isPlain()) return;
   const Lift lift = liftOf(params_.noise);
+  // A cover is met among values beyond 0 and 1, too: cut off, they would be equal.
+  const bool cut = !params_.cloud.cover || !(params_.curve == ToneCurve{});
   parallelFor(out.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     const std::span<float> part = out.subspan(begin, end - begin);
     for (float& v : part) v = lift.scale * v + lift.bias;
-    params_.curve.apply(part);
+    if (cut) params_.curve.apply(part);
   });
 }
 

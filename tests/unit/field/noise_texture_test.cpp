@@ -64,6 +64,18 @@ TEST(NoiseTexture, CoverAskedForIsCoverDelivered) {
   }
 }
 
+// Distances in cellular noise go beyond 1, where raw values are cut off.
+TEST(NoiseTexture, CoverIsMetBeyondOne) {
+  TextureParams params;
+  params.noise.kind = noise::Kind::kCellular;
+  params.noise.dimensions = 2;
+  params.noise.frequency = glm::dvec3(8.0);
+  params.cloud.cover = 0.05;
+  NoiseTexture texture(params, {200, 150, 1});
+  texture.meetCover(0.5 / 255);
+  EXPECT_NEAR(coverOf(all(texture)), 0.05, 1.5 / (200 * 150));
+}
+
 TEST(NoiseTexture, IsTheSameHoweverItIsCutAndInAnyNumberOfThreads) {
   TextureParams params = thesisParams(ThesisTexture::kDome);
   params.cloud.cover = 0.4;

@@ -85,5 +85,23 @@ TEST(Quantile, CoverOfATextureIsTheOneAskedFor) {
   }
 }
 
+// Equal values become cloud together or not at all, whichever is nearer, in integers as in floats.
+TEST(Quantile, CoverOfEqualValues) {
+  std::vector<float> noise(1000, 1.0f);
+  for (std::size_t i = 0; i < 840; ++i) noise[i] = static_cast<float>(i) / 1000.0f;
+  const std::pair<double, int> wanted[] = {{0.0, 0},    {0.05, 0},  {0.1, 160},
+                                           {0.16, 160}, {0.3, 300}, {1.0, 1000}};
+  for (const double visible : {0.0, 0.5 / 255, 0.5 / 65535})
+    for (const auto& [cover, texels] : wanted) {
+      std::vector<float> opacity = noise;
+      withCover(thesisTexture(0, 0.96), quantileAbove(noise, cover), visible).apply(opacity);
+      const auto least = static_cast<float>(visible);
+      EXPECT_EQ(std::count_if(opacity.begin(), opacity.end(),
+                              [&](float x) { return least > 0.0f ? x >= least : x > 0.0f; }),
+                texels)
+          << cover << " " << visible;
+    }
+}
+
 }  // namespace
 }  // namespace welkin::field
