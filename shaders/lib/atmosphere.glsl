@@ -181,8 +181,10 @@ WELKIN_FN AtmosphereBeams atmosphereBeams(Atmosphere a, sampler2D transmittanceL
   float seen = smoothstep(-width, width, mu - horizon);
   if (seen <= 0.0f) return AtmosphereBeams(vec3(0.0f), vec3(0.0f));
   vec4 table = textureLod(transmittanceLut, atmosphereTransmittanceUv(a, h, max(mu, horizon)), 0.0f);
-  vec3 straight = vec3(table) * seen;
-  vec3 peak = kHazePeakWeight * a.aerosolScattering * (a.aerosolScaleHeightM * table.w);
+  // No more than haze alone lets through: between texels of a thick haze the one is not the exponential of the other.
+  float wayM = a.aerosolScaleHeightM * table.w;
+  vec3 straight = min(vec3(table), exp(-a.aerosolExtinction * wayM)) * seen;
+  vec3 peak = kHazePeakWeight * a.aerosolScattering * wayM;
   return AtmosphereBeams(straight, straight * (exp(min(peak, vec3(80.0f))) - vec3(1.0f)));  // finite in fog, too
 }
 
@@ -340,6 +342,18 @@ WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler
   ray.kept *= kept;
 }
 
+// The same in as many steps as thick haze asks for, as long as anything of the ray is left: light changes within a free path there.
+WELKIN_FN void atmosphereMarchFinely(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, float eyeAltitudeM, vec3 dir,
+                                     AtmosphereLights lights, float t0, float t1, WELKIN_INOUT(AtmosphereRay) ray) {
+  float h = max(atmosphereAltitudeAlong(a, eyeAltitudeM, dir.z, 0.5f * (t0 + t1)), a.groundAltitudeM);
+  float nearer = max(atmosphereAltitudeAlong(a, eyeAltitudeM, dir.z, t0), a.groundAltitudeM);
+  float depth = max(atmosphereMedium(a, h).extinction.y, atmosphereMedium(a, nearer).extinction.y) * (t1 - t0);
+  int n = depth > 1.0f && ray.kept.y > 1e-3f ? int(ceil(min(2.0f * depth, 64.0f))) : 1;
+  for (int i = 0; i < n; ++i)
+    atmosphereMarch(a, transmittanceLut, multipleScatteringLut, eyeAltitudeM, dir, lights, mix(t0, t1, float(i) / float(n)),
+                    mix(t0, t1, float(i + 1) / float(n)), ray);
+}
+
 WELKIN_FN AtmosphereRay atmosphereRayAtEye() { return AtmosphereRay(vec3(0.0f), vec3(1.0f), vec3(1.0f)); }
 
 // Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
@@ -378,7 +392,7 @@ WELKIN_FN vec3 atmosphereSkyRay(Atmosphere a, sampler2D transmittanceLut, sample
     for (int i = 1; i <= n; ++i) {
       float x = float(i) / float(n);
       float t1 = tStart + (tLow - tStart) * x * x * (3.0f - 2.0f * x);
-      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
+      atmosphereMarchFinely(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
       t0 = t1;
     }
   }
@@ -388,7 +402,7 @@ WELKIN_FN vec3 atmosphereSkyRay(Atmosphere a, sampler2D transmittanceLut, sample
     for (int i = 1; i <= n; ++i) {
       float x = float(i) / float(n);
       float t1 = tLow + (tEnd - tLow) * x * x * x;
-      atmosphereMarch(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
+      atmosphereMarchFinely(a, transmittanceLut, multipleScatteringLut, h, dir, lights, t0, t1, ray);
       t0 = t1;
     }
   }

@@ -82,8 +82,8 @@ void addAerial(const Job& job, int first, int last, Volume<float>& inscatterTabl
             const float z = (static_cast<float>(k - 1) + static_cast<float>(s) / kStepsPerSlice) /
                             static_cast<float>(nz - 1);
             const float t1 = shared::atmosphereZToDistance(std::max(z, 0.0f));
-            shared::atmosphereMarch(job.a, job.transmittance, job.multipleScattering, job.eyeM, dir,
-                                    job.lights, t0, t1, ray);
+            shared::atmosphereMarchFinely(job.a, job.transmittance, job.multipleScattering, job.eyeM, dir,
+                                          job.lights, t0, t1, ray);
             t0 = t1;
           }
           add(&inscatterTable.at(i, j, k), ray.inscatter);

@@ -110,6 +110,30 @@ TEST(SkyTables, MarchHasConverged) {
   }
 }
 
+// In thick haze, too: no more light than falls on it, less and less, of the haze's own colour; and all of it
+// is before what is far away.
+TEST(SkyTables, HoldInThickHaze) {
+  double before = 1e9;
+  for (const double visibilityM : {1000.0, 500.0, 200.0, 100.0, 50.0, 20.0, 10.0}) {
+    SCOPED_TRACE(visibilityM);
+    const Scene s(visibilityM, 2.0, sunAt(50));
+    double mean = 0.0;
+    for (const double elevation : {5.0, 20.0, 60.0})
+      for (const double azimuth : {80.0, 127.0, 217.0}) {
+        const vec3 d = directionAt(elevation, azimuth), sky = s.sky(d);
+        EXPECT_LT(luminance(sky), 133100.0 / kPi);
+        EXPECT_LT(std::max({sky.x, sky.y, sky.z}), 2.0f * std::min({sky.x, sky.y, sky.z}));
+        mean += luminance(sky) / 9.0;
+        if (visibilityM > 300.0) continue;
+        vec3 inscatter, through;
+        s.aerial(d, 5000.0, inscatter, through);
+        EXPECT_NEAR(luminance(inscatter) / luminance(sky), 1.0, 0.05) << elevation << " " << azimuth;
+      }
+    EXPECT_LT(mean, before);
+    before = mean;
+  }
+}
+
 TEST(SkyTables, NoSeamsInAzimuthAndAtTheZenith) {
   const Scene s(40e3, 2.0, sunAt(20));
   for (double elevation : {1.0, 30.0, 80.0}) {
