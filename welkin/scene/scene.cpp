@@ -58,8 +58,8 @@ void describe(Output& o, ParamVisitor& v) {
           o.stars);
   v.value(
       {"flare", "",
-       "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; with "
-       "technique plane, skyplane, dome or octaves",
+       "share of the sun's light that the lens scatters into a glow and ghosts, 0.005 for a good one; only "
+       "with projection perspective; the reference renderer leaves it out",
        0, 1},
       o.flare);
   v.value({"frames", "", "number of pictures in a sequence or video", 1, 1000000}, o.frames);
