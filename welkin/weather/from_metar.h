@@ -3,20 +3,19 @@
 // the same weather.
 //
 // The rules and where they come from stand at the code; in short:
-// - cover      reported amounts are cumulative: cover.h
-// - genus      from height, amount, CB and TCU, precipitation, closeness to the lifting condensation level,
-// sun and season
-// - depth      from genus, amount, precipitation, latitude (genus.h); a sheet does not reach into the layer
-// above it
-// - missing    a base or amount that the report says exists but does not give is climatological,
-// `baseAssumed` is set and a note
-//              says so; SKC, CLR, NSC, NCD and CAVOK make no layer
-// - obscured   VV, and thick fog, make a layer of fog from the ground that hides the whole sky
-// - thin fog   fog through which the observer reports clouds or a clear sky is a shallow layer: 1.6 oktas,
-// near the horizon
-// - haze       Koschmieder's meteorological optical range from the visibility; "10 km or more" takes a value
-// from the humidity
-// - wind       wind.h
+// - cover: reported amounts are cumulative (cover.h)
+// - genus: from height, amount, CB and TCU, precipitation, closeness to the lifting condensation level, sun
+//   and season
+// - depth: from genus, amount, precipitation, latitude (genus.h); a sheet does not reach into the layer above
+//   it
+// - missing: a base or amount that the report says exists but does not give is climatological, `baseAssumed`
+//   is set and a note says so; SKC, CLR, NSC, NCD and CAVOK make no layer
+// - obscured: VV, and thick fog, make a layer of fog from the ground that hides the whole sky
+// - thin fog: fog through which the observer reports clouds or a clear sky is a shallow layer: 1.6 oktas,
+//   near the horizon
+// - haze: Koschmieder's meteorological optical range from the visibility; "10 km or more" takes a value from
+//   the humidity
+// - wind: wind.h
 #pragma once
 
 #include "welkin/weather/metar.h"

@@ -3,16 +3,15 @@
 // above the ground.
 //
 // Sources, named at the figures in genus.cpp:
-//   [Atlas]       WMO, International Cloud Atlas, 2017: heights of the levels by region, the genera's looks
-//   [Shuttleworth] W. J. Shuttleworth, Terrestrial Hydrometeorology, 2012, table 10.3: base and depth of the
-//   genera [OPAC]        M. Hess, P. Koepke, I. Schult, Optical properties of aerosols and clouds, 1998:
-//   effective radii; extinction
-//                 from them and the water contents as 1.5 LWC / (density of water x radius)
-//   [Salby]       M. L. Salby, Physics of the Atmosphere and Climate, table 9.2: water contents and
-//   extinctions [ISCCP]       W. B. Rossow, R. A. Schiffer, Advances in understanding clouds from ISCCP,
-//   1999: optical depth 3.6 parts
-//                 cirrus, altocumulus and cumulus from cirrostratus, altostratus and stratocumulus, 23 these
-//                 from deep convection, nimbostratus and stratus
+// - [Atlas] WMO, International Cloud Atlas, 2017: heights of the levels by region, the genera's looks
+// - [Shuttleworth] W. J. Shuttleworth, Terrestrial Hydrometeorology, 2012, table 10.3: base and depth of the
+//   genera
+// - [OPAC] M. Hess, P. Koepke, I. Schult, Optical properties of aerosols and clouds, 1998: effective radii;
+//   extinction from them and the water contents as 1.5 LWC / (density of water x radius)
+// - [Salby] M. L. Salby, Physics of the Atmosphere and Climate, table 9.2: water contents and extinctions
+// - [ISCCP] W. B. Rossow, R. A. Schiffer, Advances in understanding clouds from ISCCP, 1999: optical depth
+//   3.6 parts cirrus, altocumulus and cumulus from cirrostratus, altostratus and stratocumulus, 23 these from
+//   deep convection, nimbostratus and stratus
 #pragma once
 
 #include "welkin/weather/weather.h"
