@@ -22,7 +22,7 @@ in vec2 vCorner;
 
 uniform mat3 uSunStack;                   // across, upward, away
 uniform mat3 uSkyStack;
-uniform mat3 uGlowStack;                  // towards the bright side of the sky
+uniform mat3 uGlowStack;                  // away from the bright side of the sky
 uniform mat3 uSecondStack;
 uniform sampler2D uDepths;
 uniform DropletPhase uDroplets;

@@ -21,7 +21,7 @@ class SkyFilm {
   int width() const { return width_; }
   int height() const { return height_; }
   std::int64_t samples() const { return samples_; }  // of every pixel
-  std::uint64_t events() const { return events_; }   // since it was made or read
+  std::uint64_t events() const { return events_; }   // of all samples
 
   // One more path for every pixel, by parallelFor; the same on any number of threads. pause: called now and
   // then from several threads; where it throws, the film is as it was.

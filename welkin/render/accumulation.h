@@ -38,8 +38,8 @@ Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<floa
 
 // The picture from sums of sub-frames: RGB means by the counts in alpha, and the dither that a few sub-frames
 // leave taken out. The dither is such that any three by three pixels hold all its values, so the mean over
-// these is free of it; neighbours that differ from a pixel by more than three times `noise`, relative to
-// their sum, are not of its surface and stay out, so that edges keep.
+// five by five, which is taken, is nearly free of it; neighbours that differ from a pixel by more than three
+// times `noise`, relative to their sum, are not of its surface and stay out, so that edges keep.
 Image<float> resolve(const Image<float>& sums, float noise);
 
 }  // namespace welkin::render

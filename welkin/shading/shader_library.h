@@ -38,7 +38,7 @@ using ShaderDefine = std::pair<std::string, std::string>;
 // Arrays are read once where WELKIN_FIXED stands before the declaration: all their indices are constants.
 enum class UniformReads { kWhereUsed, kOnce };
 
-// The complete text of an entry point, named by its path below shaders/ ("pass/march.frag").
+// The complete text of an entry point, named by its path below shaders/ ("pass/sky.frag").
 // Throws Error when there is no such file, ParseError (file:line) when an include in it names none or cannot
 // be understood, Error when uniforms are to be read once and main() does not begin as said, IoError when
 // WELKIN_SHADER_DIR cannot be read.

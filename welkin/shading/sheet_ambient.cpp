@@ -21,7 +21,8 @@ glm::vec3 horizontalIlluminance(const scene::SkyState& s, const sky::Light& ligh
          s.atmosphere->transmittanceToSpace(s.scene.place.altitudeM + heightM, light.direction.z);
 }
 
-// The clear sky's, as lib/sky_uniforms.glsl has it.
+// Mean luminance of the clear sky above a height, on a straight line from the ground to 10 km. Volumes take
+// finer heights and directions (lib/light_around.glsl).
 glm::vec3 clearSky(const scene::AmbientLight& a, double heightM) {
   return glm::mix(a.skyLow, a.skyHigh, static_cast<float>(std::clamp(heightM / 10000.0, 0.0, 1.0)));
 }
