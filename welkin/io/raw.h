@@ -3,8 +3,8 @@
 // "<name>.raw.json":
 //
 //   { "version": 1, "size": [128, 128, 64], "channels": "r", "type": "float16", "byte_order": "little",
-//     "voxel_size_m": [20, 20, 10], "first_voxel_m": [0, 0, 500], "name": "density", "metadata": {"seed":
-//     "7"} }
+//     "voxel_size_m": [20, 20, 10], "first_voxel_m": [0, 0, 500], "name": "density",
+//     "metadata": {"seed": "7"} }
 //
 // `size` has three numbers for a volume and two for a picture; `channels` is a, l, r, la, rgb or rgba; `type`
 // is uint8, uint16, float16 or float32. All keys from "voxel_size_m" on may be missing; unknown ones are
@@ -38,8 +38,8 @@ class RawWriter : public TexelWriter {
 
 void writeRaw(const std::filesystem::path& path, const Texels& texels);
 
-// `path` is either. The texels' file must have exactly the size that the side
-// file says, which is checked before memory is asked for. Throws IoError with the place, also for no JSON.
+// `path` is either. The texels' file must have exactly the size that the side file says, which is checked
+// before memory is asked for. Throws IoError with the place, also for no JSON.
 Texels readRaw(const std::filesystem::path& path);
 
 }  // namespace welkin::io

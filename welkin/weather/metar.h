@@ -9,18 +9,15 @@
 //
 // What is promised:
 // - A group that cannot be read, is out of any possible range, or contradicts one read before gives an error
-// and no value;
-//   all the others are decoded as usual. There is never a guess. So weather, CB, TCU
-//   and cloud below 5,000 ft are errors beside CAVOK, cloud above a vertical visibility beside that, and a
-//   dew point more than a degree above the temperature.
+//   and no value; all the others are decoded as usual. There is never a guess. So weather, CB, TCU and cloud
+//   below 5,000 ft are errors beside CAVOK, cloud above a vertical visibility beside that, and a dew point
+//   more than a degree above the temperature.
 // - Element missing in the report (solidi, or the group is not there) means an empty value, and is no error,
-// except that a
-//   report must name its station and its time.
+//   except that a report must name its station and its time.
 // - The trend (NOSIG, TEMPO, BECMG, INTER, PROB, FM) is recognised and not decoded. Of the remarks only the T
-// group is read,
-//   which gives temperature and dew point to a tenth of a degree.
+//   group is read, which gives temperature and dew point to a tenth of a degree.
 // - Lower-case letters are read as upper case: the telegraph alphabet that the code was made for has one case
-// only.
+//   only.
 // - Any bytes may come in; time is linear in their number.
 //
 // Units: wind in m/s, visibility in metres, temperature in degrees Celsius, pressure in hPa. Heights of
