@@ -50,8 +50,8 @@ scene::Scene skyWith(const std::vector<scene::Sheet>& sheets) {
 }
 
 std::vector<scene::Sheet> planes(int count, scene::SheetTier tier) {
-  constexpr scene::SheetPreset kLayers[] = {
-      scene::SheetPreset::kThesisOvercast, scene::SheetPreset::kThesisBroken, scene::SheetPreset::kThesisFew};
+  constexpr field::ThesisTexture kLayers[] = {field::ThesisTexture::kOvercast, field::ThesisTexture::kBroken,
+                                              field::ThesisTexture::kFew};
   std::vector<scene::Sheet> sheets;
   for (int i = 0; i < count; ++i) {
     sheets.push_back(scene::sheetOf(kLayers[i]));
@@ -62,7 +62,7 @@ std::vector<scene::Sheet> planes(int count, scene::SheetTier tier) {
 }
 
 std::vector<scene::Sheet> dome(scene::SheetTier tier) {
-  std::vector<scene::Sheet> sheets = {scene::sheetOf(scene::SheetPreset::kThesisDome)};
+  std::vector<scene::Sheet> sheets = {scene::sheetOf(field::ThesisTexture::kDome)};
   sheets[0].tier = tier;
   return sheets;
 }

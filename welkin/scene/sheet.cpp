@@ -119,41 +119,39 @@ void validate(const Sheet& s) {
   if (s.pattern == SheetPattern::kOctaves) validateLiving(s);
 }
 
-Sheet sheetOf(SheetPreset preset) {
+Sheet sheetOf(field::ThesisTexture preset) {
+  const field::TextureParams texture = field::thesisParams(preset);
   Sheet s;
-  s.texels = 1024;
+  s.texels = field::thesisSize(preset).x;
+  s.octaves = texture.noise.octaves;
+  s.frequency = std::llround(texture.noise.frequency.x);
+  s.amplitude = texture.noise.amplitude;
+  s.persistence = texture.noise.persistence;
+  s.cutoff = texture.cloud.cutoff.value_or(0.7);  // the dome's texture is bare noise
+  s.density = texture.cloud.density;
   switch (preset) {
-    case SheetPreset::kThesisOvercast:
+    case field::ThesisTexture::kOvercast:
       s.heightM = 1400.0;
-      s.octaves = 10, s.frequency = 3, s.amplitude = 0.5, s.persistence = 0.7;
-      s.cutoff = 0.6, s.density = 0.95;
       break;
-    case SheetPreset::kThesisBroken:
+    case field::ThesisTexture::kBroken:
       s.heightM = 1200.0;
-      s.octaves = 10, s.frequency = 6, s.amplitude = 1.0, s.persistence = 0.4;
-      s.cutoff = 0.7, s.density = 0.96;
       break;
-    case SheetPreset::kThesisFew:
+    case field::ThesisTexture::kFew:
       s.heightM = 900.0;
-      s.octaves = 8, s.frequency = 16, s.amplitude = 0.8, s.persistence = 0.4;
-      s.cutoff = 0.8, s.density = 0.96;
       break;
-    case SheetPreset::kThesisDome:
+    case field::ThesisTexture::kDome:
       s.surface = SheetSurface::kDome;
-      s.texels = 128;
-      s.octaves = 6, s.frequency = 2, s.amplitude = 0.7, s.persistence = 0.5;
-      s.cutoff = 0.7;
       s.riseMps = 2.0;
       break;
   }
   return s;
 }
 
-SheetPreset sheetPreset(std::string_view name) {
-  const auto& names = kEnumNames<SheetPreset>;
+field::ThesisTexture sheetPreset(std::string_view name) {
+  const auto& names = kEnumNames<field::ThesisTexture>;
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end()) throw ParameterError(choiceProblem({"preset", "", ""}, names, name));
-  return static_cast<SheetPreset>(it - names.begin());
+  return static_cast<field::ThesisTexture>(it - names.begin());
 }
 
 Sheet sheetOf(const weather::Layer& layer, SheetSurface surface) {
@@ -240,9 +238,9 @@ double shareAbove(const field::PatternQuantiles& pattern, double value) {
 }  // namespace
 
 field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern) {
-  field::Condensation law = sheet.exponent
-                                ? field::thesisShader(sheet.cutoff, *sheet.exponent, 1.0)
-                                : field::thesisTexture(sheet.cutoff, sheet.density.value_or(Sheet::kDensity));
+  const double density = sheet.density.value_or(field::CondensationParams::kDensity);
+  field::Condensation law = sheet.exponent ? field::thesisShader(sheet.cutoff, *sheet.exponent, 1.0)
+                                           : field::thesisTexture(sheet.cutoff, density);
   law.bias = sheet.bias;
   if (!sheet.oktas) return law;
   if (*sheet.oktas <= 0.0) {

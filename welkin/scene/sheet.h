@@ -16,6 +16,7 @@
 #include "welkin/core/image.h"
 #include "welkin/core/params.h"
 #include "welkin/field/condensation.h"
+#include "welkin/field/noise_texture.h"
 #include "welkin/scene/drift.h"
 #include "welkin/scene/living_octaves.h"
 #include "welkin/weather/weather.h"
@@ -64,8 +65,8 @@ struct Sheet {
   double persistence = 0.5;
   double cutoff = 0.6;          // of the pattern in [0, 1]
   std::optional<double> oktas;  // wins over cutoff: the cutoff at which so much of the sky is hidden
-  // At most one of the two; neither: a density of kDensity. A level, or a unit, of the pattern lets this
-  // share of the light through that the one below it does.
+  // At most one of the two; neither: a density of CondensationParams::kDensity. A level, or a unit, of the
+  // pattern lets this share of the light through that the one below it does.
   std::optional<double> density, exponent;
   double bias = 1.0;                   // the most that the sheet hides
   glm::dvec3 colour{1.0};              // share of light that its cloud scatters, linear Rec. 709
@@ -78,17 +79,15 @@ struct Sheet {
   LivingOctaves living;  // of the pattern octaves
   SheetDrift drift;      // of the scene that it is in: sheetsOf() sets it
 
-  static constexpr double kDensity = 0.96;
   bool operator==(const Sheet&) const = default;
 };
 void describe(Sheet& s, ParamVisitor& v);
 void validate(const Sheet& s);  // throws ParameterError
 
-// The thesis's layers over its textures of 1024 texels, and its dome of 128.
-enum class SheetPreset { kThesisOvercast, kThesisBroken, kThesisFew, kThesisDome };
-Sheet sheetOf(SheetPreset preset);
+// The thesis's layers and its dome, as large and with such noise as its textures have (field::thesisParams).
+Sheet sheetOf(field::ThesisTexture preset);
 // By its name in scene files. Throws ParameterError that names the nearest.
-SheetPreset sheetPreset(std::string_view name);
+field::ThesisTexture sheetPreset(std::string_view name);
 
 // A layer of weather as a sheet on this surface: its height, cover, optical depth, wind, and cells as large
 // as its genus has them.
@@ -127,9 +126,6 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::SheetSurface> =
     std::array<std::string_view, 4>{"plane", "skyplane", "dome", "hemisphere"};
-template <>
-inline constexpr auto kEnumNames<scene::SheetPreset> =
-    std::array<std::string_view, 4>{"thesis-overcast", "thesis-broken", "thesis-few", "thesis-dome"};
 template <>
 inline constexpr auto kEnumNames<scene::SheetTier> =
     std::array<std::string_view, 3>{"flat", "embossed", "lit"};

@@ -13,10 +13,10 @@
 namespace welkin::scene {
 namespace {
 
-Theme thesisPlanes(std::initializer_list<SheetPreset> presets) {
+Theme thesisPlanes(std::initializer_list<field::ThesisTexture> presets) {
   Theme theme;
   theme.technique = Technique::kPlane;
-  for (const SheetPreset preset : presets) {
+  for (const field::ThesisTexture preset : presets) {
     theme.sheets.push_back(sheetOf(preset));
     theme.sheets.back().surface = SheetSurface::kPlane;
   }
@@ -26,7 +26,7 @@ Theme thesisPlanes(std::initializer_list<SheetPreset> presets) {
 Theme thesisDome() {
   Theme theme;
   theme.technique = Technique::kDome;
-  theme.sheets = {sheetOf(SheetPreset::kThesisDome)};
+  theme.sheets = {sheetOf(field::ThesisTexture::kDome)};
   return theme;
 }
 
@@ -58,16 +58,16 @@ Theme realisticSkies() {
 }
 
 Theme builtIn(std::size_t index) {
-  using enum SheetPreset;
+  using enum field::ThesisTexture;
   switch (index) {
     case 0:
-      return thesisPlanes({kThesisOvercast});
+      return thesisPlanes({kOvercast});
     case 1:
-      return thesisPlanes({kThesisBroken});
+      return thesisPlanes({kBroken});
     case 2:
-      return thesisPlanes({kThesisFew});
+      return thesisPlanes({kFew});
     case 3:
-      return thesisPlanes({kThesisOvercast, kThesisBroken, kThesisFew});
+      return thesisPlanes({kOvercast, kBroken, kFew});
     case 4:
       return thesisDome();
     default:

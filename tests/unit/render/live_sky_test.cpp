@@ -54,7 +54,7 @@ class LiveSkyTest : public ::testing::Test {
   static scene::Scene thinScene(double sunElevationDeg = 35.0) {
     scene::Scene s = cloudyScene(sunElevationDeg, {Genus::kStratocumulus, Genus::kCirrus});
     s.technique = scene::Technique::kSkyPlane;
-    scene::Sheet dome = scene::sheetOf(scene::SheetPreset::kThesisDome);
+    scene::Sheet dome = scene::sheetOf(field::ThesisTexture::kDome);
     dome.texels = 32;
     dome.heightM = 3000.0;
     s.sheets.push_back(dome);

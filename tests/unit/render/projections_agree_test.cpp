@@ -142,7 +142,7 @@ TEST(Projections, ShowTheSameSheetsAmongVolumes) {
   scene::Scene s = cloudyScene(40.0, {Genus::kStratocumulus, Genus::kCirrus});
   s.layers[1].technique = scene::Technique::kSkyPlane;
   s.output.quality = scene::Quality::kMedium;
-  scene::Sheet dome = scene::sheetOf(scene::SheetPreset::kThesisDome);
+  scene::Sheet dome = scene::sheetOf(field::ThesisTexture::kDome);
   dome.texels = 32;
   dome.heightM = 3000.0;
   dome.tileM = 12000.0;

@@ -45,12 +45,12 @@ TEST(Sheet, PatternTilesAndGoesByItsSeed) {
 }
 
 TEST(Sheet, ThesisPresetsHaveItsNumbers) {
-  const Sheet few = sheetOf(SheetPreset::kThesisFew);
+  const Sheet few = sheetOf(field::ThesisTexture::kFew);
   EXPECT_EQ(few.octaves, 8);
   EXPECT_EQ(few.frequency, 16);
   EXPECT_EQ(few.cutoff, 0.8);
   EXPECT_EQ(few.heightM, 900.0);
-  EXPECT_EQ(sheetOf(SheetPreset::kThesisDome).surface, SheetSurface::kDome);
+  EXPECT_EQ(sheetOf(field::ThesisTexture::kDome).surface, SheetSurface::kDome);
 }
 
 TEST(Sheet, WeatherBecomesSheets) {

@@ -105,7 +105,7 @@ TEST_F(ThemeTest, PresetsAreWhatTheOtherKeysGoOver) {
                       "[[sheet]]\npreset = \"thesis-overcast\"\nexponent = 1e-4\n",
                       "s.toml")
                       .scene;
-  Sheet expected = sheetOf(SheetPreset::kThesisBroken);
+  Sheet expected = sheetOf(field::ThesisTexture::kBroken);
   expected.heightM = 2000.0;
   EXPECT_EQ(s.sheets[0], expected);
   EXPECT_FALSE(s.sheets[1].density);
