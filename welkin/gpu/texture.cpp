@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "welkin/core/error.h"
+#include "welkin/gpu/draw.h"
 #include "welkin/gpu/gl_format.h"
 
 namespace welkin::gpu {
@@ -46,11 +46,7 @@ int channelsOf(Format format) {
 
 float affordableAnisotropy(float wanted) {
   // llvmpipe walks along the footprint texel by texel, each with a filter of its own.
-  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  const std::string_view name = renderer ? renderer : "";
-  const bool software = name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos ||
-                        name.find("SwiftShader") != name.npos;
-  return software ? 1.0f : wanted;
+  return isSoftware() ? 1.0f : wanted;
 }
 
 Texture::Texture(unsigned target, int width, int height, int depth, const TextureOptions& options)
