@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/field/quantile.h"
 
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "welkin/core/ordered_key.h"
+
 namespace welkin::field {
 namespace {
 
 constexpr std::uint32_t kBins = 65536;
-
-// A key whose order as an integer is that of the float: negative numbers are stored as sign and magnitude.
-std::uint32_t keyOf(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 becomes +0, its equal
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
-}
-
-float floatOf(std::uint32_t key) {
-  return std::bit_cast<float>(key >> 31 ? key & 0x7fffffffu : ~key);
-}
 
 // The bin that holds the sample of this rank (from 0, rising), and how many samples are in bins beneath it.
 struct Place {
@@ -45,12 +36,12 @@ SampleQuantile::SampleQuantile(double fraction) : fraction_(fraction), upper_(kB
 
 void SampleQuantile::add(std::span<const float> samples) {
   if (!secondPass_) {
-    for (const float x : samples) ++upper_[keyOf(x) >> 16];
+    for (const float x : samples) ++upper_[orderedKey(x) >> 16];
     count_ += samples.size();
     return;
   }
   for (const float x : samples) {
-    const std::uint32_t key = keyOf(x), bin = key >> 16;
+    const std::uint32_t key = orderedKey(x), bin = key >> 16;
     if (bin == lowBin_) ++low_[key & 0xffff];
     if (bin == highBin_) ++high_[key & 0xffff];
   }
@@ -86,7 +77,7 @@ double SampleQuantile::threshold() const {
   const std::uint64_t rank = count_ - above_;
   const Place low = placeOf(low_, rank > 0 ? rank - 1 : 0, belowLow_);
   const Place high = placeOf(high_, rank < count_ ? rank : count_ - 1, belowHigh_);
-  const float a = floatOf(lowBin_ << 16 | low.bin), b = floatOf(highBin_ << 16 | high.bin);
+  const float a = floatOfKey(lowBin_ << 16 | low.bin), b = floatOfKey(highBin_ << 16 | high.bin);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   if (rank == count_) return a;
   if (rank == 0) return std::nextafter(b, -kInfinity);

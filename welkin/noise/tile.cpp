@@ -2,7 +2,6 @@
 #include "welkin/noise/tile.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "welkin/core/normal.h"
+#include "welkin/core/ordered_key.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/noise/noise.h"
@@ -26,13 +26,6 @@ void normalise(std::vector<float>& v) {
   const double mean = sum / static_cast<double>(v.size());
   const double deviation = std::sqrt(std::max(squares / static_cast<double>(v.size()) - mean * mean, 1e-20));
   for (float& x : v) x = static_cast<float>((x - mean) / deviation);
-}
-
-// A key whose order as an integer is that of the float (not a NaN): negative numbers are stored as sign and
-// magnitude.
-std::uint32_t orderedKey(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x + 0.0f);  // -0 becomes +0, its equal
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
 // Indices of v from its least value to its greatest, equal ones in their order: a radix sort of three 11-bit
