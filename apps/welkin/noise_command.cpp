@@ -100,7 +100,7 @@ TexelSource sourceOf(const Request& r, const NoiseTexture& texture, const std::s
                               : io::Channels::kRgb,
               dds || png ? io::ValueType::kUnorm8 : io::ValueType::kFloat};
   if (r.params.isPlain()) {
-    const field::Lift lift = field::liftOf(r.params.noise);
+    const noise::Lift lift = noise::liftOf(r.params.noise);
     s.scale = lift.scale, s.bias = lift.bias;
   }
   s.notes.name = r.params.cloud.condenses() ? "density" : "noise";

@@ -66,13 +66,6 @@ glm::ivec3 thesisSize(ThesisTexture which) {
   return which == ThesisTexture::kDome ? glm::ivec3(128) : glm::ivec3(1024, 1024, 1);
 }
 
-Lift liftOf(const noise::NoiseParams& p) {
-  if (p.normalisation == noise::Normalisation::kUnitVariance) return {0.125f, 0.5f};
-  const bool positive = p.normalisation != noise::Normalisation::kRaw || p.kind == noise::Kind::kCellular ||
-                        p.kind == noise::Kind::kPerlinWorley;
-  return positive ? Lift{1.0f, 0.0f} : Lift{0.5f, 0.5f};
-}
-
 NoiseTexture::NoiseTexture(const TextureParams& params, glm::ivec3 size)
     : params_(params), size_(size), noise_(params.noise), law_(lawOf(params.cloud)) {
   assert(size.x >= 1 && size.y >= 1 && size.z >= 1);
@@ -102,7 +95,7 @@ void NoiseTexture::fillNoise(int first, int count, std::span<float> out) const {
   box.size[axis] = count;
   noise_.fill(noise::Grid::tile(size_), box, out);
   if (params_.isPlain()) return;
-  const Lift lift = liftOf(params_.noise);
+  const noise::Lift lift = noise::liftOf(params_.noise);
   // A cover is met among values beyond 0 and 1, too: cut off, they would be equal.
   const bool cut = !params_.cloud.cover || !(params_.curve == ToneCurve{});
   parallelFor(out.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -67,13 +67,6 @@ class NoiseTexture {
   Condensation law_;
 };
 
-// Noise of these parameters to [0, 1], as files of integers hold it: v for what is positive by itself or by
-// its normalisation, (v + 1) / 2 for raw noise of both signs, 1/2 + v/8 for unit variance.
-struct Lift {
-  float scale, bias;
-};
-Lift liftOf(const noise::NoiseParams& params);
-
 }  // namespace welkin::field
 
 namespace welkin {

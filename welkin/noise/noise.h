@@ -71,9 +71,8 @@ class Noise {
   // Fills `out` with a grid, or the part `box` of it: channels interleaved, x fastest, then y, then z. The
   // normalised value v becomes, by T:
   //   float, Half        v; out of the range of halves: infinity
-  //   uint8_t, uint16_t  round(255 u), round(65535 u), u clamped to [0, 1]: u = v for the thesis and the unit
-  //                      range, for cells and Perlin-Worley; (v + 1) / 2 for other raw noise; 1/2 + v/8 for
-  //                      unit variance, four deviations either way
+  //   uint8_t, uint16_t  round(255 u), round(65535 u), u clamped to [0, 1]: v lifted as liftOf() says, of
+  //                      unit variance four deviations either way
   // Throws ParameterError when out is not as long as box.size times channels(), the box leaves the grid, or
   // a plane's grid has several slices.
   template <class T>

@@ -76,6 +76,13 @@ void describe(NoiseParams& p, ParamVisitor& v);
 // Throws ParameterError in a sentence for what does not fit together or is out of its range.
 void validate(const NoiseParams& p);
 
+// Noise of these parameters to [0, 1], as integers hold it: v for what is positive by itself or by its
+// normalisation, (v + 1) / 2 for raw noise of both signs, 1/2 + v/8 for unit variance.
+struct Lift {
+  float scale, bias;
+};
+Lift liftOf(const NoiseParams& p);
+
 }  // namespace welkin::noise
 
 namespace welkin {

@@ -211,13 +211,6 @@ Affine normalisation(const NoiseParams& p, const Spread& s) {
   return {1.0, 0.0, -kInfinity, kInfinity};
 }
 
-Affine quantisation(const NoiseParams& p) {
-  if (p.normalisation == Normalisation::kUnitVariance) return {0.125, 0.5, 0.0, 1.0};
-  const bool positive =
-      p.normalisation != Normalisation::kRaw || p.kind == Kind::kCellular || p.kind == Kind::kPerlinWorley;
-  return positive ? Affine{1.0, 0.0, 0.0, 1.0} : Affine{0.5, 0.5, 0.0, 1.0};
-}
-
 // Perlin-Worley's gradient noise starts an octave above its coarsest cells.
 constexpr int kPerlinWorleyOctave = 1;
 
@@ -230,7 +223,8 @@ Plan makePlan(const NoiseParams& p) {
   const bool measured =
       p.normalisation == Normalisation::kUnitRange || p.normalisation == Normalisation::kUnitVariance;
   plan.normalise = normalisation(p, measured ? spreadOf(p) : Spread{0.0, 1.0, -1.0, 1.0});
-  plan.quantise = quantisation(p);
+  const Lift lift = liftOf(p);
+  plan.quantise = {lift.scale, lift.bias, 0.0, 1.0};
   switch (p.kind) {
     case Kind::kPerlin:
       plan.gradients.resize(1);
