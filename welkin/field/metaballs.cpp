@@ -70,11 +70,7 @@ MetaballField::MetaballField(std::vector<Metaball> balls) : balls_(std::move(bal
   bounds_ = field::boundsOf(balls_);
   const glm::dvec3 size = bounds_.high - bounds_.low;
   // Bins about half as large as a ball that is neither small nor large.
-  std::vector<double> radii;
-  radii.reserve(balls_.size());
-  for (const Metaball& b : balls_) radii.push_back(b.radiusM);
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-  const double bin = radii[radii.size() / 2];
+  const double bin = medianRadiusOf(balls_);
   for (int axis = 0; axis < 3; ++axis) {
     bins_[axis] = static_cast<int>(std::clamp(std::ceil(size[axis] / bin), 1.0, double{kMostBins}));
     perMetre_[axis] = bins_[axis] / size[axis];
