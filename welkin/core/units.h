@@ -22,6 +22,7 @@ constexpr double degrees(double radians) {
   return radians / kDegree;
 }
 
-inline constexpr double kOktas = 8.0;  // make the whole sky
+inline constexpr double kOktas = 8.0;       // make the whole sky
+inline constexpr double kCoverDepth = 0.3;  // optical depth from which on observers call it cloud
 
 }  // namespace welkin

@@ -9,11 +9,12 @@
 #include <span>
 #include <vector>
 
+#include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 
 namespace welkin::field {
 
-inline constexpr float kCoverOpticalDepth = 0.3f;
+inline constexpr auto kCoverOpticalDepth = static_cast<float>(kCoverDepth);
 
 // Where and how finely to look.
 struct CoverView {

@@ -18,9 +18,6 @@ namespace {
 
 constexpr double kMaxDomeTexels = 256;
 
-// Optical depth from which on observers call it cloud.
-constexpr double kVisibleDepth = 0.3;
-
 noise::NoiseParams noiseOf(const Sheet& sheet, std::uint64_t seed) {
   const bool volume = hasVolume(sheet.surface);
   noise::NoiseParams p;
@@ -221,7 +218,7 @@ namespace {
 // The least excess over the threshold that observers call cloud. Whoever asks for a sheet that hides less
 // than that gets what it has above the threshold.
 double visibleExcess(const field::Condensation& law) {
-  const double visible = -std::expm1(-kVisibleDepth);
+  const double visible = -std::expm1(-kCoverDepth);
   return law.bias > visible ? law.excessOf(visible) : 0.0;
 }
 

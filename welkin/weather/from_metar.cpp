@@ -34,10 +34,9 @@ constexpr double kObscuringOpticalDepth = 6.0;
 constexpr double kLeastObscuringDepthM = 60.0, kMostObscuringDepthM = 1500.0;
 
 // Fog through which clouds or a clear sky are reported. Its vertical optical depth makes it hide what is seen
-// through it at optical depth 0.3 or more: elevations whose sine is below 0.06 / 0.3, that fraction of the
+// through it at kCoverDepth or more: elevations whose sine is below 0.06 / 0.3, that fraction of the
 // hemisphere, 1.6 oktas.
 constexpr double kThinFogOpticalDepth = 0.06;
-constexpr double kCoveringOpticalDepth = 0.3;
 
 // Rain where a report does not say how much falls: moderate showers, and the core of a storm.
 constexpr double kShowerMmPerH = 5.0, kStormRainMmPerH = 25.0;
@@ -394,7 +393,7 @@ void Builder::addFog() {
     const double share = present_.fog == FogKind::kPartial   ? 0.5
                          : present_.fog == FogKind::kPatches ? 0.3
                                                              : 1.0;
-    layer.oktas = 8.0 * share * std::min(opticalDepth / kCoveringOpticalDepth, 1.0);
+    layer.oktas = 8.0 * share * std::min(opticalDepth / kCoverDepth, 1.0);
     weather_.requestedOktas = combinedOktas(weather_.requestedOktas, layer.oktas);
     note("The fog lets the sky be seen: it is drawn " + metres(layer.topM) + " deep.");
   }
