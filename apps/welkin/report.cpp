@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "welkin/core/param_range.h"
 #include "welkin/scene/param_json.h"
-#include "welkin/scene/param_text.h"
 
 namespace welkin::app {
 namespace {
@@ -137,13 +137,13 @@ std::map<std::string, std::string> pictureMetadata(const scene::SkyState& s, dou
   std::map<std::string, std::string> m{
       {"Software", "welkin " WELKIN_VERSION},
       {"welkin_time", formatUtcTime(s.time)},
-      {"welkin_place", scene::numberText(p.latitudeDeg) + "," + scene::numberText(p.longitudeDeg) + "," +
-                           scene::numberText(p.altitudeM)},
+      {"welkin_place",
+       numberText(p.latitudeDeg) + "," + numberText(p.longitudeDeg) + "," + numberText(p.altitudeM)},
       {"welkin_seed", std::to_string(s.scene.seed)},
       {"welkin_projection",
        std::string(kEnumNames<scene::Projection>[static_cast<std::size_t>(s.scene.camera.projection)])},
-      {"welkin_heading_deg", scene::numberText(s.headingDeg)},
-      {"welkin_exposure_ev", scene::numberText(exposureEv)},
+      {"welkin_heading_deg", numberText(s.headingDeg)},
+      {"welkin_exposure_ev", numberText(exposureEv)},
       {"welkin_sun_disc", s.scene.output.sunDisc ? "true" : "false"}};
   if (s.scene.metar) m.emplace("welkin_metar", *s.scene.metar);
   return m;

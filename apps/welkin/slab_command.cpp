@@ -11,10 +11,10 @@
 #include "report.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
+#include "welkin/core/param_range.h"
 #include "welkin/io/atomic_file.h"
 #include "welkin/reference/slab_tracer.h"
 #include "welkin/scene/param_json.h"
-#include "welkin/scene/param_text.h"
 
 namespace welkin::app {
 namespace {
@@ -76,8 +76,7 @@ int runSlab(const RenderSettings& settings) {
       result = reference::traceSlab(slab, how, [&](const reference::SlabResult& r, double done) {
         result = r;
         const reference::Estimate& e = r.total.reflectance;
-        progress.show(done,
-                      "reflectance " + scene::numberText(e.value) + " +- " + scene::numberText(e.error));
+        progress.show(done, "reflectance " + numberText(e.value) + " +- " + numberText(e.error));
         throwIfInterrupted();
       });
     } catch (const Interrupted&) {

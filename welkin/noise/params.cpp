@@ -5,48 +5,10 @@
 #include <string>
 
 #include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
 
 namespace welkin::noise {
 namespace {
-
-// Throws for the first number outside its described range.
-class RangeCheck : public ParamVisitor {
- public:
-  void value(const ParamInfo&, bool&) override {}
-  void value(const ParamInfo& info, std::int64_t& x) override { check(info, static_cast<double>(x)); }
-  void value(const ParamInfo& info, double& x) override { check(info, x); }
-  void value(const ParamInfo& info, glm::dvec3& x) override {
-    for (int i = 0; i < 3; ++i) check(info, x[i]);
-  }
-  void value(const ParamInfo&, std::string&) override {}
-  void value(const ParamInfo&, UtcTime&) override {}
-  void value(const ParamInfo& info, std::optional<double>& x) override {
-    if (x) check(info, *x);
-  }
-  void value(const ParamInfo&, std::optional<std::string>&) override {}
-  void choice(const ParamInfo&, std::span<const std::string_view>, int&) override {}
-
- protected:
-  bool beginGroup(const ParamInfo&) override { return true; }
-  void endGroup() override {}
-  std::size_t beginList(const ParamInfo&, std::size_t size) override { return size; }
-  void beginElement(std::size_t) override {}
-  void endElement() override {}
-  void endList() override {}
-
- private:
-  static std::string text(double x) {
-    std::string s = std::to_string(x);
-    s.erase(s.find_last_not_of('0') + 1);
-    if (s.back() == '.') s.pop_back();
-    return s;
-  }
-  static void check(const ParamInfo& info, double x) {
-    if (std::isfinite(x) && x >= info.min && x <= info.max) return;
-    throw ParameterError("the noise's " + std::string(info.key) + " is " + text(x) + ", not within " +
-                         text(info.min) + " to " + text(info.max));
-  }
-};
 
 void require(bool fine, const char* sentence) {
   if (!fine) throw ParameterError(sentence);
@@ -89,9 +51,8 @@ void describe(NoiseParams& p, ParamVisitor& v) {
 }
 
 void validate(const NoiseParams& p) {
-  NoiseParams copy = p;
-  RangeCheck check;
-  describe(copy, check);
+  if (const std::string problem = rangeProblemIn(p); !problem.empty())
+    throw ParameterError("the noise's " + problem);
   if (p.tile) {
     for (int axis = 0; axis < p.dimensions; ++axis)
       require(isWhole(p.frequency[axis]) && p.frequency[axis] >= 1.0,

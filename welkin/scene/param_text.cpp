@@ -2,18 +2,12 @@
 #include "welkin/scene/param_text.h"
 
 #include <charconv>
-#include <cmath>
 #include <vector>
 
 #include "welkin/core/error.h"
 
 namespace welkin::scene {
 namespace {
-
-std::string withUnit(std::string text, const ParamInfo& info) {
-  if (!info.unit.empty()) text += " " + std::string(info.unit);
-  return text;
-}
 
 [[noreturn]] void fail(const ParamInfo& info, std::string_view expected, std::string_view found) {
   throw ParameterError(std::string(info.key) + ": expected " + std::string(expected) + ", found \"" +
@@ -36,48 +30,6 @@ double parseDouble(const ParamInfo& info, std::string_view text) {
 }
 
 }  // namespace
-
-std::string numberText(double x) {
-  char buffer[32];
-  // Whole numbers of everyday size are written out: 100000 rather than 1e+05.
-  const bool plain = std::abs(x) < 1e16 && x == std::trunc(x);
-  const auto end = plain ? std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::fixed).ptr
-                         : std::to_chars(buffer, buffer + sizeof buffer, x).ptr;
-  return {buffer, end};
-}
-
-std::string rangeText(const ParamInfo& info) {
-  const bool low = std::isfinite(info.min), high = std::isfinite(info.max);
-  if (low && high) return withUnit(numberText(info.min) + " to " + numberText(info.max), info);
-  if (low) return withUnit("at least " + numberText(info.min), info);
-  if (high) return withUnit("at most " + numberText(info.max), info);
-  return {};
-}
-
-namespace {
-
-std::string notInRange(const ParamInfo& info, const std::string& number) {
-  const std::string range = rangeText(info);
-  return std::string(info.key) + " is " + number + "; expected " +
-         (range.empty() ? "a finite number" : range);
-}
-
-}  // namespace
-
-std::string rangeProblem(const ParamInfo& info, double x) {
-  if (x >= info.min && x <= info.max && std::isfinite(x)) return {};
-  return notInRange(info, numberText(x));
-}
-
-std::string rangeProblem(const ParamInfo& info, std::int64_t n) {
-  // 2^63 is the first double that no number here reaches; below it doubles have whole numbers' own values.
-  constexpr double kBeyond = 0x1p63;
-  const bool low =
-      info.min >= kBeyond || (info.min > -kBeyond && n < static_cast<std::int64_t>(std::ceil(info.min)));
-  const bool high =
-      info.max < -kBeyond || (info.max < kBeyond && n > static_cast<std::int64_t>(std::floor(info.max)));
-  return low || high ? notInRange(info, std::to_string(n)) : std::string();
-}
 
 std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,
                           std::string_view found) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values of described parameters as text: reading one (a flag of the command line, a value typed into a
-// panel), and the sentences that say what is wrong with one. Scene files use the same sentences, so that a
-// mistake reads the same wherever it is made.
+// panel), and the sentences that say what is wrong with one (of numbers: core/param_range.h). Scene files use
+// the same sentences, so that a mistake reads the same wherever it is made.
 #pragma once
 
 #include <cstdint>
@@ -9,24 +9,10 @@
 #include <string>
 #include <string_view>
 
+#include "welkin/core/param_range.h"
 #include "welkin/core/params.h"
 
 namespace welkin::scene {
-
-// The shortest text that reads back as the same number: "0.1", "40000", "1e-09".
-std::string numberText(double x);
-
-// "-90 to 90 deg", "at least 0", or empty when everything is allowed.
-std::string rangeText(const ParamInfo& info);
-
-// Empty, or what is wrong with the number: "latitude_deg is 95; expected -90 to 90 deg". NaN and infinities
-// are never allowed.
-std::string rangeProblem(const ParamInfo& info, double x);
-// The same of a whole number, to the last digit.
-std::string rangeProblem(const ParamInfo& info, std::int64_t n);
-inline std::string rangeProblem(const ParamInfo& info, int n) {
-  return rangeProblem(info, std::int64_t{n});
-}
 
 // What is wrong with a name that is none of the choices, with the nearest one when there is one.
 std::string choiceProblem(const ParamInfo& info, std::span<const std::string_view> names,

@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/weather/weather.h"
 
-#include <cmath>
 #include <string>
 
 #include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
 
 namespace welkin::weather {
 namespace {
 
 constexpr double kMaxHeightM = 25000.0;
 constexpr double kMostRainMmPerH = 300.0;
-
-void require(bool condition, const Layer& layer, const std::string& message) {
-  if (condition) return;
-  throw ParameterError("layer of " + std::string(kEnumNames<Genus>[static_cast<std::size_t>(layer.genus)]) +
-                       ": " + message);
-}
-
-bool within(double x, double least, double most) {
-  return x >= least && x <= most;
-}  // false for NaN
 
 }  // namespace
 
@@ -51,15 +41,11 @@ void describe(Layer& layer, ParamVisitor& v) {
 }
 
 void validate(const Layer& layer) {
-  require(within(layer.baseM, 0.0, kMaxHeightM), layer, "base_m must be from 0 to 25000");
-  require(within(layer.topM, 0.0, kMaxHeightM), layer, "top_m must be from 0 to 25000");
-  require(layer.topM > layer.baseM, layer, "top_m must be above base_m");
-  require(within(layer.oktas, 0.0, 8.0), layer, "oktas must be from 0 to 8");
-  require(within(layer.effectiveRadiusUm, 1.0, 200.0), layer, "effective_radius_um must be from 1 to 200");
-  require(within(layer.extinctionPerM, 0.0, 1.0), layer, "extinction_per_m must be from 0 to 1");
-  require(within(layer.windFromDeg, 0.0, 360.0), layer, "wind_from_deg must be from 0 to 360");
-  require(within(layer.windSpeedMps, 0.0, 150.0), layer, "wind_speed_mps must be from 0 to 150");
-  require(within(layer.rainMmPerH, 0.0, kMostRainMmPerH), layer, "rain_mm_per_h must be from 0 to 300");
+  std::string problem = rangeProblemIn(layer);
+  if (problem.empty() && layer.topM <= layer.baseM) problem = "top_m must be above base_m";
+  if (problem.empty()) return;
+  const auto genus = kEnumNames<Genus>[static_cast<std::size_t>(layer.genus)];
+  throw ParameterError("layer of " + std::string(genus) + ": " + problem);
 }
 
 }  // namespace welkin::weather

@@ -2,8 +2,6 @@
 // Text, documentation and JSON of described parameters.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -24,25 +22,6 @@ std::string problemOf(std::string_view path, std::string_view text) {
     return e.what();
   }
   return {};
-}
-
-TEST(NumberText, ReadsBackAsTheSameNumber) {
-  for (const double x : {0.1, 1e-9, 40000.0, 1.0 / 3.0, -8.55, 1e22, 9007199254740991.0, 0.05})
-    EXPECT_EQ(std::stod(numberText(x)), x) << numberText(x);
-  EXPECT_EQ(numberText(100000.0), "100000");
-  EXPECT_EQ(numberText(-0.25), "-0.25");
-}
-
-TEST(RangeProblem, NamesRangeAndUnit) {
-  const ParamInfo latitude{"latitude_deg", "deg", "", -90, 90};
-  EXPECT_EQ(rangeProblem(latitude, 95), "latitude_deg is 95; expected -90 to 90 deg");
-  EXPECT_EQ(rangeProblem(latitude, 90), "");
-  EXPECT_EQ(rangeProblem(latitude, -90), "");
-  EXPECT_NE(rangeProblem(latitude, std::nan("")), "");
-  const ParamInfo any{"x", "", ""};
-  EXPECT_EQ(rangeProblem(any, 1e300), "");
-  EXPECT_EQ(rangeProblem(any, std::numeric_limits<double>::infinity()), "x is inf; expected a finite number");
-  EXPECT_EQ(rangeText(ParamInfo{"x", "m", "", 0}), "at least 0 m");
 }
 
 TEST(SetParam, SetsEachType) {

@@ -322,7 +322,12 @@ TEST(Layers, ContradictionsAreRefused) {
   EXPECT_THROW(validate(l), ParameterError);
   l = {};
   l.oktas = 8.5;
-  EXPECT_THROW(validate(l), ParameterError);
+  try {
+    validate(l);
+    ADD_FAILURE();
+  } catch (const ParameterError& e) {
+    EXPECT_STREQ(e.what(), "layer of cumulus: oktas is 8.5; expected 0 to 8 okta");
+  }
   l = {};
   l.extinctionPerM = std::nan("");
   EXPECT_THROW(validate(l), ParameterError);
