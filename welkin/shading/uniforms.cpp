@@ -190,15 +190,15 @@ MarchSettings marchSettings(scene::Quality quality) {
               .maxSteps = 400,
               .sunSamples = 3};
     case scene::Quality::kUltra:
-      return {.subframes = 64,
-              .tolerance = 0.002f,
-              .noise = 0.004f,
-              .stepNearM = 20.0f,
-              .stepShare = 0.005f,
-              .maxSteps = 800,
-              .sunSamples = 5};
+      break;
   }
-  return {};
+  return {.subframes = 64,
+          .tolerance = 0.002f,
+          .noise = 0.004f,
+          .stepNearM = 20.0f,
+          .stepShare = 0.005f,
+          .maxSteps = 800,
+          .sunSamples = 5};
 }
 
 Uniforms marchUniforms(const MarchSettings& settings) {

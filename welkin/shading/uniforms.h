@@ -39,17 +39,16 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms);
 // the sine of the light's elevation (rows). Allocates only where the table is empty.
 void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table);
 
-// How finely to march.
+// How finely to march: marchSettings().
 struct MarchSettings {
-  int subframes = 8;  // accumulated into a still, at most
-  float tolerance =
-      0.008f;           // relative difference of the first two up to which a part of the picture has enough
-  float noise = 0.02f;  // relative, that the sub-frames leave and the resolve takes out
-  float stepNearM = 30.0f;   // smallest step, in cloud
-  float stepShare = 0.008f;  // step in cloud as a share of the distance
-  float stepLong = 30.0f;    // the longest step through clear air, in steps in cloud
-  int maxSteps = 300;
-  int sunSamples = 4;  // density samples towards the sun before the light volume takes over
+  int subframes = 0;       // accumulated into a still, at most
+  float tolerance = 0.0f;  // relative, up to which a part of the picture has enough of them
+  float noise = 0.0f;      // relative, that the sub-frames leave and the resolve takes out
+  float stepNearM = 0.0f;  // smallest step, in cloud
+  float stepShare = 0.0f;  // step in cloud as a share of the distance
+  float stepLong = 30.0f;  // the longest step through clear air, in steps in cloud: the same of every quality
+  int maxSteps = 0;
+  int sunSamples = 0;  // density samples towards the sun before the light volume takes over
 };
 MarchSettings marchSettings(scene::Quality quality);
 Uniforms marchUniforms(const MarchSettings& settings);
