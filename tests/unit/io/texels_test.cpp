@@ -6,6 +6,7 @@
 #include "scratch.h"
 #include "some_texels.h"
 #include "welkin/io/convert_texels.h"
+#include "welkin/io/raw.h"
 #include "welkin/io/texel_file.h"
 #include "welkin/io/vdb.h"
 
@@ -160,6 +161,17 @@ TEST_F(TexelFiles, RoundTrip) {
           }
         }
   EXPECT_EQ(written, 4 * 2 + 3 * 2 + 1 + 26 + 48 + (hasVdb() ? 12 : 0));
+}
+
+TEST_F(TexelFiles, RawByEitherOfItsNames) {
+  Texels texels = randomTexels(volumeOf("r16f", 5, 4, 3));
+  texels.notes.name = "extinction";
+  writeRaw(folder / "x.raw.json", texels);
+  EXPECT_EQ(std::filesystem::file_size(folder / "x.raw"), texels.shape.bytes());
+  const Texels back = readRaw(folder / "x.raw");
+  EXPECT_EQ(back.shape, texels.shape);
+  EXPECT_EQ(back.bytes, texels.bytes);
+  EXPECT_EQ(back.notes.name, "extinction");
 }
 
 TEST_F(TexelFiles, ErrorsAndLeftovers) {
