@@ -21,15 +21,6 @@ double volumeAt(double age, double fade) {
 
 }  // namespace
 
-void describe(MetaballMotion& m, ParamVisitor& v) {
-  v.value({"wind_mps", "m/s", "wind of the cloud, east, north and up", -200, 200}, m.windMps);
-  v.value({"shear_per_s", "1/s", "wind that each metre of height adds", -1, 1}, m.shearPerS);
-  v.value({"reference_m", "m", "height at which the wind is the cloud's", -1e6, 1e6}, m.referenceM);
-  v.value({"life_s", "s", "life of a ball; 0: they stay", 0, 1e9}, m.lifeS);
-  v.value({"fade", "", "share of a life in which a ball grows, and in which it decays", 0, 0.5}, m.fade);
-  v.value({"seed", "", "other moments of birth", 0, 9007199254740991.0}, m.seed);
-}
-
 std::vector<Metaball> ballsAt(std::span<const Metaball> balls, const MetaballMotion& motion, double timeS) {
   std::vector<Metaball> moved(balls.begin(), balls.end());
   move(moved, motion, timeS);

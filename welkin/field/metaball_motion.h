@@ -8,10 +8,11 @@
 // beyond it: shear turns the cloud over without ever tearing it apart.
 #pragma once
 
+#include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
-#include "welkin/core/params.h"
 #include "welkin/field/metaballs.h"
 
 namespace welkin::field {
@@ -21,10 +22,9 @@ struct MetaballMotion {
   glm::dvec3 shearPerS{0.0};  // m/s of wind more for each metre above referenceM
   double referenceM = 0.0;    // height of windMps, in the balls' frame
   double lifeS = 0.0;         // of a ball, each within 30 % of it; 0: they stay
-  double fade = 0.3;          // share of a life in which it grows, and again in which it decays
+  double fade = 0.3;          // share of a life in which it grows, and again in which it decays, to 0.5
   std::int64_t seed = 0;
 };
-void describe(MetaballMotion& m, ParamVisitor& v);
 
 // The balls at that time, as many and in the same order; one that is not alive has density 0 and a radius of
 // a thousandth. Densities of the others stay, radii grow with the cube root of the volume.

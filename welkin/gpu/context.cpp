@@ -263,9 +263,6 @@ void Context::makeCurrent() {
 std::string Context::deviceName() const {
   return impl_->device;
 }
-std::string Context::versionString() const {
-  return text(GL_VERSION);
-}
 int Context::majorVersion() const {
   return impl_->version / 10;
 }

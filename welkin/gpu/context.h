@@ -39,8 +39,7 @@ class Context {
 
   void makeCurrent();  // in the calling thread; throws GpuError
 
-  std::string deviceName() const;     // "llvmpipe (LLVM 15.0.6, 256 bits)", as the driver calls it
-  std::string versionString() const;  // "4.5 (Core Profile) Mesa 22.3.6", as the driver writes it
+  std::string deviceName() const;  // "llvmpipe (LLVM 15.0.6, 256 bits)", as the driver calls it
   int majorVersion() const;
   int minorVersion() const;
   bool hasCompute() const;       // desktop OpenGL 4.3 or later

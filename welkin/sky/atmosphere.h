@@ -91,7 +91,6 @@ class Atmosphere {
 
   double groundAltitudeM() const { return uniforms_.groundAltitudeM; }
   double topAltitudeM() const { return uniforms_.topAltitudeM; }
-  float aerosolGroundExtinction() const { return uniforms_.aerosolExtinction.y; }  // 1/m, green
 
   // Transmittance from a point to space in the direction with zenith cosine mu; 0 where the earth is in the
   // way (half a light's disc at the horizon itself).

@@ -79,7 +79,6 @@ PresentWeather readPresentWeather(std::span<const std::string> groups, double te
     const bool storm = has("TS");
     w.thunder = w.thunder || storm;
     // Drifting and blowing snow comes from the ground, not from a cloud.
-    if (has("BL") || has("SS") || has("DS") || has("FU") || has("VA")) w.obscuring = true;
     if (has("BL") || has("DR")) continue;
 
     const Phenomenon* p = dominant(body);

@@ -19,8 +19,7 @@ struct PresentWeather {
   bool heavy = false;
   bool thunder = false;
   FogKind fog = FogKind::kNone;
-  bool obscuring = false;  // blowing snow, sand, dust or smoke that may hide the sky
-  std::string vicinity;    // the groups that begin with VC, for a note
+  std::string vicinity;  // the groups that begin with VC, for a note
 };
 
 // `groups` as in Metar::weather; `temperatureC` decides what precipitation of unknown kind (UP) is.
