@@ -2,6 +2,7 @@
 #include "welkin/reference/cloud_density.h"
 
 #include <cstring>
+#include <vector>
 
 #include "welkin/core/glsl.h"
 

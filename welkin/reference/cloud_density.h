@@ -4,7 +4,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "welkin/field/cloud_field.h"
 

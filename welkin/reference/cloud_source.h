@@ -4,7 +4,6 @@
 // and a sun that is a point.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 
 #include "welkin/core/random.h"

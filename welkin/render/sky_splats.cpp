@@ -2,6 +2,7 @@
 #include "welkin/render/sky_splats.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>

@@ -3,7 +3,6 @@
 // (lib/splat_layer.glsl): drawn on the picture's own plane, or for other projections on the faces of a cube.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 

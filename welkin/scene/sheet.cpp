@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "welkin/core/error.h"
 #include "welkin/core/units.h"

@@ -11,7 +11,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "welkin/core/image.h"
 #include "welkin/core/params.h"

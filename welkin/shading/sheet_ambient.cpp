@@ -2,6 +2,7 @@
 #include "welkin/shading/sheet_ambient.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>

@@ -4,7 +4,6 @@
 // Means over the layers' whole patterns; where the shadows lie the patterns themselves say. Pure.
 #pragma once
 
-#include <array>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <span>

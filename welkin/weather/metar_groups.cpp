@@ -2,6 +2,7 @@
 #include "welkin/weather/metar_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "welkin/core/units.h"

@@ -4,7 +4,6 @@
 // business of metar_parse.cpp.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
