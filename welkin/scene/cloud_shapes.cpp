@@ -89,8 +89,8 @@ Habit habitOf(weather::Genus genus, double depthM) {
   return mixed(habit, kCongestus, std::clamp((depthM - kMediocrisM) / (kCongestusM - kMediocrisM), 0.0, 1.0));
 }
 
-// How much farther apart cumulus stand than at half cover. They are as broad then as they are deep, where few in
-// the same pattern would be its peaks alone, slender and pointed.
+// How much farther apart cumulus stand than at half cover. They are as broad then as they are deep, where few
+// in the same pattern would be its peaks alone, slender and pointed.
 double spacingOf(const weather::Layer& layer) {
   constexpr double kHalf = 4.0, kFewest = 1.0, kPower = 0.8;
   if (layer.genus != weather::Genus::kCumulus) return 1.0;

@@ -80,7 +80,9 @@ void describe(Scene& s, ParamVisitor& v) {
            "the weather as a METAR report; wins over every [[layer]]; absent: the weather is by hand"},
           s.metar);
   v.value({"visibility_m", "m",
-           "meteorological optical range at the ground; absent: from the report, else 40 km", 10, 300000},
+           "how far black things stand out at the ground, by a contrast of 2 % (Koschmieder); absent: from "
+           "the report, else 40 km",
+           10, 300000},
           s.visibilityM);
   v.choice({"technique", "",
             "how layers that name no technique of their own are drawn: as volumes (auto, volume) or, in next "

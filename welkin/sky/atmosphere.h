@@ -59,7 +59,7 @@ void visitFields(const AtmosphereUniforms& u, F&& f) {
   f("airglowAltitudeM", u.airglowAltitudeM);
 }
 
-// The coefficients for a visibility (m, meteorological optical range at the ground). Pure.
+// The coefficients for a visibility (m, at the ground, by a contrast of 2 %). Pure.
 AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double visibilityM,
                                       double groundAltitudeM, glm::vec3 groundAlbedo);
 
@@ -78,7 +78,7 @@ LightMoments operator*(float share, const LightMoments& m);
 
 class Atmosphere {
  public:
-  // visibilityM: meteorological optical range at the ground, Koschmieder: total extinction there is 3.912 /
+  // visibilityM: at the ground, by a contrast of 2 %, Koschmieder: total extinction there is 3.912 /
   // visibility.
   Atmosphere(const AtmosphereParams& params, double visibilityM, double groundAltitudeM,
              glm::vec3 groundAlbedo);

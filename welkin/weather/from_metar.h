@@ -13,7 +13,7 @@
 // - obscured: VV, and thick fog, make a layer of fog from the ground that hides the whole sky
 // - thin fog: fog through which the observer reports clouds or a clear sky is a shallow layer: 1.6 oktas,
 //   near the horizon
-// - haze: Koschmieder's meteorological optical range from the visibility; "10 km or more" takes a value from
+// - haze: by Koschmieder's law from the visibility; "10 km or more" takes a value from
 //   the humidity
 // - wind: wind.h
 #pragma once
@@ -31,7 +31,7 @@ Weather weatherFromMetar(const Metar& metar, double latitudeDeg, int month, doub
 // annex 4.B).
 double relativeHumidity(double temperatureC, double dewPointC);
 
-// Meteorological optical range that "10 km or more" stands for, from the humidity, in metres.
+// Visibility that "10 km or more" stands for, from the humidity, in metres.
 //
 // 40 km in dry air, the usual of clean continental and maritime air masses. Particles grow with humidity:
 // their extinction goes about as (1 - RH)^-0.5 (Haenel, The properties of atmospheric aerosol particles as

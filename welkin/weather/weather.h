@@ -76,7 +76,7 @@ enum class PrecipitationKind { kNone, kDrizzle, kRain, kSnow, kIcePellets, kHail
 struct Weather {
   std::vector<Layer> layers;     // from the lowest base to the highest
   double requestedOktas = 0.0;   // cover of the whole sky by all layers together
-  double visibilityM = 40000.0;  // meteorological optical range at the ground, for haze (Koschmieder)
+  double visibilityM = 40000.0;  // at the ground, for haze: by a contrast of 2 % (Koschmieder)
   double pressureHpa = 1013.25;  // at mean sea level
   double temperatureC = 15.0;
   double surfaceWindFromDeg = 270.0;
