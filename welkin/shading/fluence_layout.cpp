@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <functional>
 
 namespace welkin::shading {
 namespace {
@@ -21,8 +20,9 @@ std::vector<bool> cellsOfAir(const Bands& bands) {
   std::vector<std::size_t> gaps;
   for (std::size_t b = 0; b + 1 < bands.size(); ++b)
     if (!touches(bands, b)) gaps.push_back(b);
-  std::ranges::stable_sort(gaps, std::greater(),
-                           [&](std::size_t b) { return bands[b + 1].baseM - bands[b].topM; });
+  const auto wide = [&](std::size_t b) { return bands[b + 1].baseM - bands[b].topM; };
+  std::ranges::sort(
+      gaps, [&](std::size_t a, std::size_t b) { return wide(a) != wide(b) ? wide(a) > wide(b) : a < b; });
   constexpr std::size_t kMost = FluenceLayout::kMostCells;
   assert(bands.size() <= kMost);
   gaps.resize(std::min(gaps.size(), kMost - bands.size()));
