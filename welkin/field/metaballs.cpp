@@ -3,17 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "welkin/core/error.h"
+#include "welkin/core/glsl.h"
 #include "welkin/core/parallel.h"
 #include "welkin/field/metaball_grid.h"
 
 namespace welkin::field {
 namespace {
+
+// Shared with the GPU.
+using namespace welkin::glsl;
+#include "shaders/lib/splat.glsl"
 
 constexpr int kSlabSlices = 4;
 constexpr int kMostBins = 64;  // on an axis
@@ -21,6 +27,14 @@ constexpr int kMostBins = 64;  // on an axis
 constexpr double kMostM = 1e15, kMostDensity = 1e30;
 
 }  // namespace
+
+double columnAlong(const Metaball& ball, const glm::dvec3& from, const glm::dvec3& direction) {
+  const glm::dvec3 to = ball.centreM - from;
+  const double along = glm::dot(to, direction), aside2 = glm::dot(to, to) - along * along;
+  return ball.density * ball.radiusM *
+         static_cast<double>(splatColumn(static_cast<float>(aside2 / (ball.radiusM * ball.radiusM)),
+                                         static_cast<float>(-along / ball.radiusM), 1.0f));
+}
 
 double integralOf(std::span<const Metaball> balls) {
   double sum = 0.0;

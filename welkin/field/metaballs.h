@@ -46,6 +46,9 @@ double integralOf(std::span<const Metaball> balls);
 // The middle one of their radii; there must be some.
 double medianRadiusOf(std::span<const Metaball> balls);
 
+// The integral of a ball's density along a ray from a point in a unit direction, in closed form.
+double columnAlong(const Metaball& ball, const glm::dvec3& from, const glm::dvec3& direction);
+
 // The box around all of them; both corners 0 if there are none.
 Box boundsOf(std::span<const Metaball> balls);
 

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
-#include "welkin/core/glsl.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/render/sky_splats.h"
 
@@ -14,9 +12,6 @@ namespace {
 
 // While clouds drift and grow there may come to be more of them than at first.
 constexpr std::size_t kRoom = 2;
-
-using namespace welkin::glsl;
-#include "shaders/lib/splat.glsl"
 
 }  // namespace
 
@@ -67,13 +62,7 @@ float LiveSplats::lightFrom(const glm::vec3& direction) const {
   double depth = 0.0;
   for (std::size_t i = 0; i < shadowBalls_.clouds.size(); ++i) {
     double own = 0.0;
-    for (const field::Metaball& b : shadowBalls_.ballsOf(i)) {
-      const glm::dvec3 to = b.centreM - eye;
-      const double along = glm::dot(to, d), aside2 = glm::dot(to, to) - along * along;
-      own += b.density * b.radiusM *
-             static_cast<double>(splatColumn(static_cast<float>(aside2 / (b.radiusM * b.radiusM)),
-                                             static_cast<float>(-along / b.radiusM), 1.0f));
-    }
+    for (const field::Metaball& b : shadowBalls_.ballsOf(i)) own += field::columnAlong(b, eye, d);
     depth += std::max(own, 0.0);
   }
   return static_cast<float>(std::exp(-depth));

@@ -6,7 +6,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "welkin/core/glsl.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
@@ -33,10 +32,6 @@ double widestM(const weather::Layer& layer, const std::vector<LibraryCloud>& lib
 const std::vector<LibraryCloud>& libraryOf(bool flat) {
   return flat ? flatCumulus() : cumulusTowers();
 }
-
-// Shared with the GPU.
-using namespace welkin::glsl;
-#include "shaders/lib/splat.glsl"
 
 }  // namespace
 
@@ -138,16 +133,7 @@ std::vector<float> MetaballLayer::opticalDepths(double secondsAfter, const glm::
         const double along = glm::dot(s.middle, dir);
         if (along < -s.radiusM || glm::dot(s.middle, s.middle) - along * along > s.radiusM * s.radiusM)
           continue;
-        for (std::size_t i = s.begin; i < s.end; ++i) {
-          const field::Metaball& b = all[i];
-          const glm::dvec3 to = b.centreM - eye;
-          const double t = glm::dot(to, dir);
-          if (t > 0.0)
-            depth +=
-                b.density * b.radiusM *
-                static_cast<double>(splatColumn(
-                    static_cast<float>((glm::dot(to, to) - t * t) / (b.radiusM * b.radiusM)), -1.0f, 1.0f));
-        }
+        for (std::size_t i = s.begin; i < s.end; ++i) depth += field::columnAlong(all[i], eye, dir);
         if (depth > field::kCoverOpticalDepth) break;
       }
       depths[d] = static_cast<float>(depth);

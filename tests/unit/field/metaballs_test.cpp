@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "welkin/core/error.h"
@@ -57,6 +58,24 @@ TEST(Metaballs, IntegralOfTheKernelIsExact) {
     sum += (i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * a * a * wyvill(a);
   }
   EXPECT_NEAR(4.0 * std::numbers::pi * sum / (3.0 * kSteps), kWyvillIntegral, 1e-12);
+}
+
+// From outside, from within and past a ball, and away from it.
+TEST(Metaballs, ColumnIsTheIntegralAlongARay) {
+  const Metaball ball{{10.0, -20.0, 30.0}, 8.0, 0.3};
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(1.0, 2.0, -2.0));
+  for (const double aside : {0.0, 3.0, 7.5, 9.0})
+    for (const double start : {-50.0, -2.0, 5.0, 20.0}) {
+      const glm::dvec3 across = glm::normalize(glm::dvec3(2.0, 1.0, 2.0));  // square to it
+      const glm::dvec3 from = ball.centreM + start * direction + aside * across;
+      constexpr int kSteps = 20000;
+      constexpr double kStepM = 100.0 / kSteps;
+      double sum = 0.0;
+      for (int i = 0; i < kSteps; ++i)
+        sum += kStepM * ball.density *
+               wyvill(glm::distance(from + (i + 0.5) * kStepM * direction, ball.centreM) / ball.radiusM);
+      EXPECT_NEAR(columnAlong(ball, from, direction), sum, 1e-5) << aside << " " << start;
+    }
 }
 
 TEST(Metaballs, FieldIntegratesToTheAnalyticValue) {
