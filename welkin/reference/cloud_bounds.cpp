@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <glm/common.hpp>
 
 #include "welkin/core/glsl.h"
@@ -18,23 +19,25 @@ using field::CloudLayer;
 }  // namespace shared
 
 constexpr float kRounding = 1e-4f;  // relative to what is summed; floats round to 6e-8
-constexpr int kMostCells = 4;       // along a side of what is looked up at one level
 
 Interval operator+(Interval a, Interval b) {
   return {a.low + b.low, a.high + b.high};
 }
 Interval operator*(Interval a, Interval b) {
-  const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
-  return {low, high};
+  const float x[4] = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
+  return {std::min(std::min(x[0], x[1]), std::min(x[2], x[3])),
+          std::max(std::max(x[0], x[1]), std::max(x[2], x[3]))};
 }
 Interval operator*(float a, Interval b) {
-  return Interval{a, a} * b;
+  return a < 0.0f ? Interval{a * b.high, a * b.low} : Interval{a * b.low, a * b.high};
 }
 Interval shifted(Interval a, float by) {
   return {a.low + by, a.high + by};
 }
-Interval united(Interval a, Interval b) {
-  return {std::min(a.low, b.low), std::max(a.high, b.high)};
+// No std::floor(), which is a call on plain x86-64.
+int floorOf(float x) {
+  const int i = static_cast<int>(x);
+  return i - (static_cast<float>(i) > x);
 }
 
 Interval smoothstep(float a, float b, Interval x) {
@@ -56,78 +59,113 @@ Turned turned(Interval x, Interval y, float c, float s) {
 
 }  // namespace
 
-TexelExtremes::TexelExtremes(const std::vector<float>& values, int nx, int ny, int nz, int channels,
-                             int channel) {
-  Level base{{nx, ny, nz}, {}};
-  for (std::size_t i = static_cast<std::size_t>(channel); i < values.size();
-       i += static_cast<std::size_t>(channels))
-    base.cells.push_back({values[i], values[i]});
-  levels_.push_back(std::move(base));
+TexelExtremes::Level::Level(int nx, int ny, int nz, int cellSize)
+    : n{nx, ny, nz},
+      rowSize(static_cast<std::size_t>((nx + kMostCells - 1) * cellSize)),
+      cells(rowSize * static_cast<std::size_t>(ny * nz), std::int16_t{-32768}) {}
+
+void TexelExtremes::Level::repeatRows(int cellSize) {
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int i = n[0] * cellSize; i < static_cast<int>(rowSize); ++i)
+        row(y, z)[i] = row(y, z)[i - n[0] * cellSize];
+}
+
+TexelExtremes::TexelExtremes(const std::vector<float>& values, int nx, int ny, int nz, int channels)
+    : channels_(channels > 1 ? kMostChannels : 1) {
+  float most = 1e-6f;
+  for (const float v : values) most = std::max(most, std::abs(v));
+  step_ = most / 32000.0f;
+  auto rounded = [&](float x) { return static_cast<std::int16_t>(std::ceil(x / step_ + 0.01f)); };
+  const int cellSize = 2 * channels_;
+  levels_.emplace_back(nx, ny, nz, cellSize);
+  const float* v = values.data();
+  for (int z = 0; z < nz; ++z)
+    for (int y = 0; y < ny; ++y)
+      for (int x = 0; x < nx; ++x)
+        for (int c = 0; c < channels; ++c, ++v) {
+          std::int16_t* cell = levels_[0].row(y, z) + x * cellSize + 2 * c;
+          cell[0] = rounded(-*v);
+          cell[1] = rounded(*v);
+        }
+  levels_[0].repeatRows(cellSize);
   while (levels_.back().n[0] > 1 || levels_.back().n[1] > 1 || levels_.back().n[2] > 1) {
     const Level& fine = levels_.back();
-    Level coarse{{(fine.n[0] + 1) / 2, (fine.n[1] + 1) / 2, (fine.n[2] + 1) / 2}, {}};
-    for (int z = 0; z < coarse.n[2]; ++z)
-      for (int y = 0; y < coarse.n[1]; ++y)
-        for (int x = 0; x < coarse.n[0]; ++x) {
-          Interval all{1e30f, -1e30f};
-          for (int k = 2 * z; k < std::min(2 * z + 2, fine.n[2]); ++k)
-            for (int j = 2 * y; j < std::min(2 * y + 2, fine.n[1]); ++j)
-              for (int i = 2 * x; i < std::min(2 * x + 2, fine.n[0]); ++i)
-                all = united(all, fine.cells[static_cast<std::size_t>((k * fine.n[1] + j) * fine.n[0] + i)]);
-          coarse.cells.push_back(all);
-        }
+    Level coarse((fine.n[0] + 1) / 2, (fine.n[1] + 1) / 2, (fine.n[2] + 1) / 2, cellSize);
+    for (int z = 0; z < fine.n[2]; ++z)
+      for (int y = 0; y < fine.n[1]; ++y)
+        for (int x = 0; x < fine.n[0]; ++x)
+          for (int i = 0; i < cellSize; ++i) {
+            std::int16_t& to = coarse.row(y / 2, z / 2)[x / 2 * cellSize + i];
+            to = std::max(to, fine.row(y, z)[x * cellSize + i]);
+          }
+    coarse.repeatRows(cellSize);
     levels_.push_back(std::move(coarse));
   }
 }
 
-Interval TexelExtremes::over(glm::vec3 low, glm::vec3 high) const {
+TexelExtremes::Channels TexelExtremes::over(glm::vec3 low, glm::vec3 high) const {
   const int dimensions = levels_.front().n[2] > 1 ? 3 : 2;
   // Whole texels that filtering reaches, a texel wider than need be: coordinates are rounded here too.
-  int first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
+  int first[3] = {0, 0, 0}, last[3] = {0, 0, 0}, widest = 1;
   for (int a = 0; a < dimensions; ++a) {
     const int n = levels_.front().n[a];
     const auto size = static_cast<float>(n);
     const float x0 = low[a] * size - 0.5f, x1 = high[a] * size - 0.5f;
-    if (!(x1 - x0 < size - 4.0f)) {
-      first[a] = 0, last[a] = n - 1;
-      continue;
+    if (x1 - x0 < size - 4.0f) {
+      const float tiles =
+          static_cast<float>(floorOf(x0 / size)) * size;  // exact: sizes are powers of two, or small
+      first[a] = floorOf(x0 - tiles - 0.01f);
+      last[a] = floorOf(x1 - tiles + 0.01f) + 1;
+    } else {
+      last[a] = n - 1;
     }
-    const float tiles = std::floor(x0 / size) * size;  // exact: sizes are powers of two, or small
-    first[a] = static_cast<int>(std::floor(x0 - tiles - 0.01f));
-    last[a] = static_cast<int>(std::floor(x1 - tiles + 0.01f)) + 1;
+    widest = std::max(widest, last[a] - first[a] + 1);
   }
   std::size_t level = 0;
   auto cells = [&](int a) { return (last[a] >> level) - (first[a] >> level) + 1; };
-  while (level + 1 < levels_.size() && std::max({cells(0), cells(1), cells(2)}) > kMostCells) ++level;
+  if (widest > kMostCells)
+    while (level + 1 < levels_.size() && std::max({cells(0), cells(1), cells(2)}) > kMostCells) ++level;
   const Level& l = levels_[level];
-  // Where the cells of each side stand.
-  std::array<int, kMostCells + 1> at[3];
-  int n[3] = {1, 1, 1};
-  for (int a = 0; a < 3; ++a) {
-    const int begin = first[a] >> level;
-    n[a] = std::min((last[a] >> level) - begin + 1, l.n[a]);
-    for (int i = 0, x = ((begin % l.n[a]) + l.n[a]) % l.n[a]; i < n[a]; ++i) {
-      at[a][static_cast<std::size_t>(i)] = x;
-      if (++x == l.n[a]) x = 0;
-    }
+  // Where the cells of each side begin.
+  int at[3] = {0, 0, 0}, n[3] = {1, 1, 1};
+  for (int a = 0; a < dimensions; ++a) {
+    n[a] = std::min(cells(a), l.n[a]);
+    const int begin = first[a] >> level, size = l.n[a];
+    at[a] = (size & (size - 1)) == 0 ? begin & (size - 1) : ((begin % size) + size) % size;
   }
-  Interval all{1e30f, -1e30f};
-  for (int k = 0; k < n[2]; ++k)
-    for (int j = 0; j < n[1]; ++j) {
-      const Interval* row = &l.cells[static_cast<std::size_t>((at[2][k] * l.n[1] + at[1][j]) * l.n[0])];
-      for (int i = 0; i < n[0]; ++i) all = united(all, row[at[0][i]]);
+  // A register of cells at a time, one of several channels or several of one: of those the first n[0] count.
+  using Cells = std::int16_t __attribute__((vector_size(16)));
+  constexpr int kRegister = 8;
+  const int cellSize = 2 * channels_, together = kRegister / cellSize;
+  Cells all = {-32768, -32768, -32768, -32768, -32768, -32768, -32768, -32768};
+  for (int k = 0, z = at[2]; k < n[2]; ++k, z = z + 1 == l.n[2] ? 0 : z + 1)
+    for (int j = 0, y = at[1]; j < n[1]; ++j, y = y + 1 == l.n[1] ? 0 : y + 1) {
+      const std::int16_t* row = l.row(y, z) + at[0] * cellSize;
+      for (int i = 0; i < n[0]; i += together) {
+        Cells some;
+        std::memcpy(&some, row + i * cellSize, sizeof some);
+        all = some > all ? some : all;
+      }
     }
-  return all;
+  Channels channels;
+  for (int c = 0; c < channels_; ++c) {
+    int least = -32768, most = -32768;
+    for (int i = 0; i < std::min(n[0], together); ++i) {
+      least = std::max<int>(least, all[i * cellSize + 2 * c]);
+      most = std::max<int>(most, all[i * cellSize + 2 * c + 1]);
+    }
+    channels[static_cast<std::size_t>(c)] = {-step_ * static_cast<float>(least),
+                                             step_ * static_cast<float>(most)};
+  }
+  return channels;
 }
 
 CloudBounds::CloudBounds(const field::CloudField& field) : field_(field) {
   const field::CloudNoise& n = field.noise();
-  auto plane = [&](int channel) {
-    return TexelExtremes(n.placement.data, n.placement.width, n.placement.height, 1, n.placement.channels,
-                         channel);
-  };
-  cells_ = plane(0), fractal_ = plane(1), patchX_ = plane(0), patchY_ = plane(1), patchZ_ = plane(2);
-  auto volume = [](const Volume<float>& v) { return TexelExtremes(v.data, v.nx, v.ny, v.nz, v.channels, 0); };
+  const Image<float>& p = n.placement;
+  placement_ = TexelExtremes(p.data, p.width, p.height, 1, p.channels);
+  auto volume = [](const Volume<float>& v) { return TexelExtremes(v.data, v.nx, v.ny, v.nz, v.channels); };
   shape_ = volume(n.shape);
   detail_ = volume(n.detail);
 }
@@ -147,12 +185,13 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval ux = 0.8f / l.patchM * ax + (-0.6f / l.patchM) * ay,
                  uy = 0.6f / l.patchM * ax + 0.8f / l.patchM * ay;
   const glm::vec3 patchLow(ux.low, uy.low, 0.0f), patchHigh(ux.high, uy.high, 0.0f);
-  const Interval px = patchX_.over(patchLow, patchHigh), py = patchY_.over(patchLow, patchHigh),
-                 pz = patchZ_.over(patchLow, patchHigh);
-  const Interval bx = 1.0f / l.cellM * (ax + l.warpM * py), by = 1.0f / l.cellM * (ay + l.warpM * px);
+  const TexelExtremes::Channels patches = placement_.over(patchLow, patchHigh);
+  const Interval bx = 1.0f / l.cellM * (ax + l.warpM * patches[1]),
+                 by = 1.0f / l.cellM * (ay + l.warpM * patches[0]);
   const glm::vec3 cellLow(bx.low, by.low, 0.0f), cellHigh(bx.high, by.high, 0.0f);
-  const Interval placement = l.cellWeight * cells_.over(cellLow, cellHigh) +
-                             l.fractalWeight * fractal_.over(cellLow, cellHigh) + l.patchWeight * pz;
+  const TexelExtremes::Channels cells = placement_.over(cellLow, cellHigh);
+  const Interval placement =
+      l.cellWeight * cells[0] + l.fractalWeight * cells[1] + l.patchWeight * patches[2];
 
   // cloudProfile.
   const Interval dome = l.dome * Interval{std::pow(h.low, l.domePower), std::pow(h.high, l.domePower)};
@@ -180,7 +219,7 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   auto over = [&](const TexelExtremes& noise, const field::vec3& shift, float period) {
     return noise.over(
         {(qx.low - shift.x) / period, (qy.low - shift.y) / period, (qz.low - shift.z) / period},
-        {(qx.high - shift.x) / period, (qy.high - shift.y) / period, (qz.high - shift.z) / period});
+        {(qx.high - shift.x) / period, (qy.high - shift.y) / period, (qz.high - shift.z) / period})[0];
   };
   s = s + amounts * over(shape_, l.shapeShiftM, l.shapeM);
   if (s.high + 2.0f * l.detailAmount <= 0.0f) return {};

@@ -5,6 +5,8 @@
 // point of the box is beyond the bounds but by the rounding of floats, for which there is a margin.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -24,17 +26,34 @@ struct CloudBox {
 // Least and greatest values of a tiling texture over boxes, from a pyramid of them.
 class TexelExtremes {
  public:
+  static constexpr int kMostChannels = 4;
+  using Channels = std::array<Interval, kMostChannels>;
+
   TexelExtremes() = default;
-  // `values` are `channels` interleaved; nz is 1 for a picture.
-  TexelExtremes(const std::vector<float>& values, int nx, int ny, int nz, int channels, int channel);
+  // `values` are `channels` interleaved, up to kMostChannels; nz is 1 for a picture.
+  TexelExtremes(const std::vector<float>& values, int nx, int ny, int nz, int channels);
   // Of linear filtering anywhere in the box of texture coordinates, which may be of any size.
-  Interval over(glm::vec3 low, glm::vec3 high) const;
+  Channels over(glm::vec3 low, glm::vec3 high) const;
 
  private:
+  // Of each cell and channel the least value, its sign turned, and the greatest, in steps and rounded up:
+  // what holds of several cells is the greatest of each. Rows go on at their end as they begin, so that
+  // kMostCells may be read from anywhere.
   struct Level {
     int n[3];
-    std::vector<Interval> cells;
+    std::size_t rowSize;
+    std::vector<std::int16_t> cells;
+    Level(int nx, int ny, int nz, int cellSize);
+    std::int16_t* row(int y, int z) { return &cells[static_cast<std::size_t>(z * n[1] + y) * rowSize]; }
+    const std::int16_t* row(int y, int z) const {
+      return &cells[static_cast<std::size_t>(z * n[1] + y) * rowSize];
+    }
+    void repeatRows(int cellSize);
   };
+  static constexpr int kMostCells = 4;  // along a side of what is looked up at one level
+
+  int channels_ = 1;   // in memory: 1 or kMostChannels
+  float step_ = 0.0f;  // of what cells hold
   std::vector<Level> levels_;
 };
 
@@ -50,7 +69,7 @@ class CloudBounds {
 
  private:
   const field::CloudField& field_;
-  TexelExtremes cells_, fractal_, patchX_, patchY_, patchZ_, shape_, detail_;
+  TexelExtremes placement_, shape_, detail_;
 };
 
 }  // namespace welkin::reference
