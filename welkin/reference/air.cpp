@@ -16,8 +16,9 @@ namespace {
 constexpr double kStepM = 20e3;  // longest; a chord of it sags by 8 m
 constexpr int kMostPieces = 24;
 
-// Of the table of extinctions: between two entries an exponential of 1200 m is a line within 4e-5.
-constexpr double kShortM = 500.0, kEntryM = 20.0, kEntriesTopM = 25e3;
+// Of the table of extinctions: between two entries an exponential of 1200 m is a line within 1.4e-4. Along so
+// little of a way it is one as well.
+constexpr double kShortM = 500.0, kEntryM = 40.0, kEntriesTopM = 25e3, kLineM = 60.0;
 
 // Of AirToLight.
 constexpr int kHeights = 200, kCosines = 160;
@@ -59,7 +60,7 @@ Air::Air(const sky::AtmosphereUniforms& u)
   const glm::vec3 sum = u.rayleighScattering + u.aerosolExtinction + u.ozoneAbsorption;
   empty_ = sum.x + sum.y + sum.z <= 0.0f;
   for (double h = 0.0; h <= kEntriesTopM + 2.0 * kEntryM; h += kEntryM)
-    extinctions_.push_back(at(h).extinction);
+    extinctions_.emplace_back(at(h).extinction);
 }
 
 Air::Medium Air::at(double heightM) const {
@@ -105,16 +106,21 @@ glm::dvec3 Air::opticalDepth(const Sphere& earth, const Ray& ray, double t) cons
 glm::dvec3 Air::transmittance(const Sphere& earth, const Ray& ray, double t) const {
   const double h0 = std::max(earth.height(ray.from), 0.0);
   if (t > kShortM || h0 > kEntriesTopM - kShortM) return glm::exp(-opticalDepth(earth, ray, t));
-  const double h1 = std::max(earth.height(ray.at(t)), 0.0);
   auto extinction = [&](double h) {
-    const double x = h / kEntryM;
+    const double x = h * (1.0 / kEntryM);
     const auto i = static_cast<std::size_t>(x);
-    return extinctions_[i] + (extinctions_[i + 1] - extinctions_[i]) * (x - static_cast<double>(i));
+    const glm::dvec3 a(extinctions_[i]), b(extinctions_[i + 1]);
+    return a + (b - a) * (x - static_cast<double>(i));
   };
-  // Two points of Gauss.
-  constexpr double kFirst = 0.21132486540518712;
-  const glm::dvec3 tau =
-      0.5 * t * (extinction(h0 + kFirst * (h1 - h0)) + extinction(h1 + kFirst * (h0 - h1)));
+  glm::dvec3 tau;
+  if (t < kLineM) {
+    tau = t * extinction(std::max(earth.height(ray.at(0.5 * t)), 0.0));
+  } else {
+    // Two points of Gauss.
+    constexpr double kFirst = 0.21132486540518712;
+    const double h1 = std::max(earth.height(ray.at(t)), 0.0);
+    tau = 0.5 * t * (extinction(h0 + kFirst * (h1 - h0)) + extinction(h1 + kFirst * (h0 - h1)));
+  }
   if (std::max({tau.x, tau.y, tau.z}) > 0.05) return glm::exp(-tau);
   return 1.0 - tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0)));  // the series of exp(-tau)
 }

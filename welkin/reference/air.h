@@ -59,7 +59,7 @@ class Air {
   double ground_, top_;
   double fineG_ = 0.0;  // of the haze's wide lobe
   bool empty_ = false;
-  std::vector<glm::dvec3> extinctions_;  // by height above the ground
+  std::vector<glm::vec3> extinctions_;  // by height above the ground
 };
 
 // Transmittance to space towards a light's disc from where clouds are, tabulated over height and the cosine

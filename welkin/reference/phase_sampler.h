@@ -3,6 +3,7 @@
 // function exactly, so that estimates which use both have no bias.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -30,7 +31,8 @@ class PhaseSampler {
   // Steps between cosines that rise; empty: closed form. The share of light up to each edge, the density
   // inside each step.
   std::vector<double> edges_, shares_, densities_;
-  std::vector<int> guide_;  // the first step that may hold u = i / size
+  std::vector<std::uint16_t> guide_;      // the first step that may hold u = i / size
+  std::vector<std::uint16_t> stepGuide_;  // the first that may hold a cosine, by a number that it is made to
 };
 
 }  // namespace welkin::reference
