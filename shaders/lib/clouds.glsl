@@ -47,9 +47,12 @@ WELKIN_FN float cloudPlacement(CloudLayer layer, sampler2D placement, vec2 p) {
 WELKIN_CONST float kAnvilShape = 0.55f;      // strength of the large 3D noise
 WELKIN_CONST float kAnvilEdge = 8.0f;        // depth of the edge
 WELKIN_CONST float kAnvilExtinction = 0.3f;
+// Relative heights between which a cloud becomes its anvil.
+WELKIN_CONST float kAnvilFrom = 0.62f;
+WELKIN_CONST float kAnvilTo = 0.88f;
 
 // How much of an anvil there is at relative height h, [0, 1].
-WELKIN_FN float cloudAnvil(CloudLayer layer, float h) { return layer.anvil > 0.0f ? smoothstep(0.62f, 0.88f, h) : 0.0f; }
+WELKIN_FN float cloudAnvil(CloudLayer layer, float h) { return layer.anvil > 0.0f ? smoothstep(kAnvilFrom, kAnvilTo, h) : 0.0f; }
 
 // How much the surface is drawn in at relative height h in [0, 1], sd.
 WELKIN_FN float cloudProfile(CloudLayer layer, float h) {

@@ -15,13 +15,6 @@ using namespace welkin::glsl;
 using field::CloudLayer;
 #include "shaders/lib/clouds.glsl"
 
-// Positions along so long a piece of a ray are taken to lie on a straight line of cloud positions: they bend
-// off it by 0.16 m over the curved ground, which is within the grid's margin.
-constexpr double kPieceM = 2000.0;
-// What is left of a transmittance goes on with a chance below this share.
-constexpr double kRouletteBelow = 0.1, kRouletteTo = 0.25;
-constexpr double kMostControl = 1.5;  // until it is looked at
-
 double freeDepth(Random& random) {
   // The least number is half a step, so that the longest is 18.
   return static_cast<double>(-std::log((static_cast<float>(random.next() >> 40) + 0.5f) * 0x1p-24f));
@@ -60,34 +53,39 @@ double CloudMedium::extinction(const glm::dvec3& p) const {
   return pointIn(grid_->at(q).layers, p).extinction;
 }
 
+CloudMedium::Stretches CloudMedium::stretches(const Ray& ray, double end) const {
+  Stretches s{};
+  double near = 0.0, far = 0.0, innerNear = 0.0, innerFar = 0.0;
+  if (!grid_ || !earth_.crossings(ray, grid_->highM(), near, far)) return s;
+  s[0] = {std::max(near, 0.0), std::min(far, end)};
+  if (earth_.rises(ray) && earth_.height(ray.from) > grid_->lowM())
+    return s;  // the sphere of the base is behind
+  if (earth_.crossings(ray, grid_->lowM(), innerNear, innerFar)) {
+    s[0][1] = std::min(innerNear, end);
+    if (earth_.toGround(ray, -1.0) < 0.0) s[1] = {std::max(innerFar, 0.0), std::min(far, end)};
+  }
+  return s;
+}
+
+CloudLine CloudMedium::lineFrom(const Ray& ray, double a, float length) const {
+  const auto radius = static_cast<float>(earth_.radiusM());
+  const vec3 q = cloudPosition(vec3(ray.at(a)), radius);
+  return {q, (cloudPosition(vec3(ray.at(a + static_cast<double>(length))), radius) - q) / length};
+}
+
 template <class F>
 void CloudMedium::walk(const Ray& ray, double end, F&& f) const {
   if (!grid_) return;
-  double near = 0.0, far = 0.0, innerNear = 0.0, innerFar = 0.0;
-  if (!earth_.crossings(ray, grid_->highM(), near, far)) return;
-  // Inside the shell on one or two stretches: before and behind the sphere of the lowest base.
-  double stretches[2][2] = {{std::max(near, 0.0), std::min(far, end)}, {0.0, 0.0}};
-  if (earth_.rises(ray) && earth_.height(ray.from) > grid_->lowM()) {
-    // Up from within: the sphere of the base is behind.
-  } else if (earth_.crossings(ray, grid_->lowM(), innerNear, innerFar)) {
-    stretches[0][1] = std::min(innerNear, end);
-    stretches[1][0] = std::max(innerFar, 0.0);
-    stretches[1][1] = earth_.toGround(ray, -1.0) < 0.0 ? std::min(far, end) : 0.0;
-  }
-  const auto radius = static_cast<float>(earth_.radiusM());
-  for (const auto& stretch : stretches) {
+  for (const auto& stretch : stretches(ray, end))
     for (double a = stretch[0]; a < stretch[1]; a += kPieceM) {
       const auto length = static_cast<float>(std::min(kPieceM, stretch[1] - a));
-      const vec3 q0 = cloudPosition(vec3(ray.at(a)), radius);
-      const CloudLine line(
-          q0, (cloudPosition(vec3(ray.at(a + static_cast<double>(length))), radius) - q0) / length);
+      const CloudLine line = lineFrom(ray, a, length);
       if (grid_->walk(line, length, [&](const Bounds& bounds, unsigned there, float t0, float t1) {
             return f(bounds, there, a + static_cast<double>(t0), a + static_cast<double>(t1));
           }))
         return;
-      if (std::max(std::abs(q0.x), std::abs(q0.y)) > MajorantGrid::kReachM) break;
+      if (MajorantGrid::isBeyond(line.from)) break;
     }
-  }
 }
 
 std::optional<CloudMedium::Collision> CloudMedium::collide(const Ray& ray, double end, Random& random) const {

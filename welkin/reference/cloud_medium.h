@@ -8,8 +8,10 @@
 // Participating Media" (transmittance). Majorants are local: majorant_grid.h.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "welkin/core/random.h"
 #include "welkin/reference/cloud_density.h"
@@ -43,6 +45,34 @@ class CloudMedium {
   // Extinction at a place, 1/m.
   double extinction(const glm::dvec3& p) const;
 
+  // What those two are made of, for cloud_walks.h, which goes along many rays at once.
+
+  // The stretches of [0, end) that are between the lowest base and the highest top: before and behind the
+  // sphere of the base. Of no length, or less: none.
+  using Stretches = std::array<std::array<double, 2>, 2>;
+  Stretches stretches(const Ray& ray, double end) const;
+  // So long a piece of a ray, from a on, as a line of cloud positions: over the curved ground they bend off
+  // it by 0.16 m, which is within the grid's margin.
+  static constexpr double kPieceM = 2000.0;
+  CloudLine lineFrom(const Ray& ray, double a, float length) const;
+  // What is left of a transmittance goes on with a chance below this share.
+  static constexpr double kRouletteBelow = 0.1, kRouletteTo = 0.25;
+  static constexpr double kMostControl = 1.5;  // of an optical depth, until it is looked at
+
+  // Layers of ice, snow and rain, bit i for the field's layer i.
+  struct Bits {
+    std::uint32_t ice = 0, snow = 0, rain = 0;
+  };
+  Bits matters() const { return {ice_, snow_, rain_}; }
+  // What all of some layers are made of; none: of several things.
+  std::optional<Matter> onlyMatter(std::uint32_t layers) const {
+    for (const auto& [bits, matter] :
+         {std::pair(~(ice_ | snow_ | rain_), Matter::kDroplets), std::pair(ice_, Matter::kIce),
+          std::pair(snow_, Matter::kSnow), std::pair(rain_, Matter::kRain)})
+      if ((layers & ~bits) == 0) return matter;
+    return std::nullopt;
+  }
+  const CloudDensity& density() const { return density_; }
   const MajorantGrid* grid() const { return grid_ ? &*grid_ : nullptr; }
   const Sphere& earth() const { return earth_; }
 

@@ -10,9 +10,8 @@
 namespace welkin::reference {
 namespace {
 
-constexpr float kGuideM = 10.0f;
-constexpr float kThinnestSliceM = 30.0f, kThickestSliceM = 200.0f;
-constexpr int kSlicesOfLayer = 28;
+constexpr float kThinnestSliceM = 60.0f, kThickestSliceM = 200.0f;
+constexpr int kSlicesOfLayer = 14;
 // A brick is divided where light would meet so many needless collisions on its way across it, about.
 constexpr float kNeedless = 0.5f;
 constexpr float kVoxelM = 32.0f;         // high, about
@@ -72,35 +71,41 @@ MajorantGrid::MajorantGrid(const field::CloudField& field, std::vector<int> laye
     }
     return std::clamp(thinnest / kSlicesOfLayer, kThinnestSliceM, kThickestSliceM);
   };
-  edges_.push_back(cuts.front());
+  slices_.edges.push_back(cuts.front());
   for (std::size_t c = 1; c < cuts.size(); ++c) {
-    const float from = edges_.back(), to = cuts[c];
+    const float from = slices_.edges.back(), to = cuts[c];
     if (to - from < 0.1f) continue;
     const int n = std::max(1, static_cast<int>(std::ceil((to - from) / sliceM(from, to))));
     for (int i = 1; i <= n; ++i)
-      edges_.push_back(i == n ? to : from + (to - from) * static_cast<float>(i) / static_cast<float>(n));
+      slices_.edges.push_back(i == n ? to
+                                     : from + (to - from) * static_cast<float>(i) / static_cast<float>(n));
   }
-  for (std::size_t k = 0; k + 1 < edges_.size(); ++k) {
-    Slice slice;
-    slice.voxelsHigh =
-        std::clamp(static_cast<int>(std::lround((edges_[k + 1] - edges_[k]) / kVoxelM)), 1, kVoxelsAcross);
-    slice.voxelM = (edges_[k + 1] - edges_[k]) / static_cast<float>(slice.voxelsHigh);
-    slice.voxelsPerM = 1.0f / slice.voxelM;
-    slice.lines =
-        static_cast<std::uint32_t>(blockedSize(kVoxelsAcross, slice.voxelsHigh) / CodeLines::kCodes);
+  for (std::size_t k = 0; k + 1 < slices_.edges.size(); ++k) {
+    const float high = slices_.edges[k + 1] - slices_.edges[k];
+    const int voxels = std::clamp(static_cast<int>(std::lround(high / kVoxelM)), 1, kVoxelsAcross);
+    slices_.voxelsHigh.push_back(voxels);
+    slices_.voxelM.push_back(high / static_cast<float>(voxels));
+    slices_.voxelsPerM.push_back(1.0f / slices_.voxelM.back());
+    slices_.lines.push_back(
+        static_cast<std::uint32_t>(blockedSize(kVoxelsAcross, voxels) / CodeLines::kCodes));
+    std::uint16_t there = 0;
     for (const int i : layers_) {
       const field::CloudLayer& l = field.layers()[static_cast<std::size_t>(i)];
-      if (l.baseM < edges_[k + 1] + kMarginM && l.topM > edges_[k] - kMarginM)
-        slice.layers |= static_cast<std::uint16_t>(1u << i);
+      if (l.baseM < slices_.edges[k + 1] + kMarginM && l.topM > slices_.edges[k] - kMarginM)
+        there |= static_cast<std::uint16_t>(1u << i);
     }
-    slices_.push_back(slice);
+    slices_.layers.push_back(there);
   }
-  int slice = 0;
-  for (float z = edges_.front(); z < edges_.back() + kGuideM; z += kGuideM) {
-    while (slice + 2 < static_cast<int>(edges_.size()) && edges_[static_cast<std::size_t>(slice) + 1] <= z)
-      ++slice;
-    sliceGuide_.push_back(slice);
+  slices_.last = static_cast<std::int32_t>(slices_.layers.size()) - 1;
+  slices_.guideFromM = slices_.edges.front();
+  std::int32_t slice = 0;
+  for (float z = slices_.edges.front(); z < slices_.edges.back() + kGuideM; z += kGuideM) {
+    const std::int32_t before = slice;
+    while (slice < slices_.last && slices_.edges[static_cast<std::size_t>(slice) + 1] <= z) ++slice;
+    slices_.guide.push_back(slice);
+    slices_.mostInGuide = std::max(slices_.mostInGuide, slice - before + 1);
   }
+  slices_.lastGuide = static_cast<std::int32_t>(slices_.guide.size()) - 1;
 }
 
 MajorantGrid::~MajorantGrid() {
@@ -108,11 +113,9 @@ MajorantGrid::~MajorantGrid() {
 }
 
 int MajorantGrid::sliceAt(float z) const {
-  const int most = static_cast<int>(sliceGuide_.size()) - 1;
-  int slice = sliceGuide_[static_cast<std::size_t>(
-      std::clamp(static_cast<int>((z - edges_.front()) / kGuideM), 0, most))];
-  while (slice + 2 < static_cast<int>(edges_.size()) && edges_[static_cast<std::size_t>(slice) + 1] <= z)
-    ++slice;
+  std::int32_t slice = slices_.guide[static_cast<std::size_t>(
+      std::clamp(static_cast<int>((z - slices_.guideFromM) / kGuideM), 0, slices_.lastGuide))];
+  while (slice < slices_.last && slices_.edges[static_cast<std::size_t>(slice) + 1] <= z) ++slice;
   return slice;
 }
 
@@ -140,11 +143,11 @@ std::unique_ptr<MajorantGrid::Tile> MajorantGrid::makeTile(int x, int y) const {
   tile->bricksPerM = 1.0f / tile->brickM;
   tile->voxelsPerM = 1.0f / tile->voxelM;
   tile->needless = kNeedless / tile->brickM;
-  const std::size_t slices = slices_.size();
+  const std::size_t slices = slices_.layers.size();
   tile->clear.resize(slices);
   for (std::size_t k = 0, first = 0; k <= slices; ++k) {
-    if (k < slices && compute({{tile->low.x, tile->low.y, edges_[k]},
-                               {tile->low.x + kTileM, tile->low.y + kTileM, edges_[k + 1]}}) == kClear)
+    if (k < slices && compute({{tile->low.x, tile->low.y, slices_.edges[k]},
+                               {tile->low.x + kTileM, tile->low.y + kTileM, slices_.edges[k + 1]}}) == kClear)
       continue;
     for (std::size_t i = first; i < k; ++i)
       tile->clear[i] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(k)};
@@ -156,11 +159,13 @@ std::unique_ptr<MajorantGrid::Tile> MajorantGrid::makeTile(int x, int y) const {
   return tile;
 }
 
-const MajorantGrid::Tile* MajorantGrid::tileAt(const glm::vec3& q) const {
-  const float fx = (q.x + kReachM) / kTileM, fy = (q.y + kReachM) / kTileM;
-  if (!(fx >= 0.0f && fy >= 0.0f && fx < static_cast<float>(kTiles) && fy < static_cast<float>(kTiles)))
+const MajorantGrid::Tile* MajorantGrid::tileAt(const glm::vec2& q) const {
+  // Exact: a tile is a power of two wide. Beside the eye's kilometres the reach would cost the last bits.
+  const glm::vec2 at = glm::floor(q / kTileM) + 0.5f * static_cast<float>(kTiles);
+  if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < static_cast<float>(kTiles) &&
+        at.y < static_cast<float>(kTiles)))
     return nullptr;
-  const int x = static_cast<int>(fx), y = static_cast<int>(fy);
+  const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
   std::atomic<Tile*>& slot = tiles_[static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x)];
   if (Tile* tile = slot.load(std::memory_order_acquire)) return tile;
   std::unique_ptr<Tile> tile = makeTile(x, y);
@@ -175,11 +180,11 @@ glm::ivec3 MajorantGrid::brickAt(const Tile& tile, const glm::vec3& q) const {
 }
 
 MajorantGrid::Cell MajorantGrid::at(glm::vec3 q) const {
-  const Tile* tile = tileAt(q);
+  const Tile* tile = tileAt(glm::vec2(q));
   constexpr float kFar = 1e9f;
   if (!tile) return {{}, 0, {glm::vec3(-kFar), glm::vec3(kFar)}};
   const glm::ivec3 i = brickAt(*tile, q);
-  const std::uint16_t layers = slices_[static_cast<std::size_t>(i.z)].layers;
+  const std::uint16_t layers = slices_.layers[static_cast<std::size_t>(i.z)];
   const Bounds bounds = boundsOf(brickCode(*tile, i));
   if (bounds.majorant - bounds.minorant <= tile->needless) return {bounds, layers, brickBox(*tile, i)};
   const Brick brick = brickOf(*tile, i);

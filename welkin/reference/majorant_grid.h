@@ -80,8 +80,8 @@ class MajorantGrid {
   MajorantGrid(const MajorantGrid&) = delete;
   MajorantGrid& operator=(const MajorantGrid&) = delete;
 
-  float lowM() const { return edges_.front(); }  // heights between which there may be cloud
-  float highM() const { return edges_.back(); }
+  float lowM() const { return slices_.edges.front(); }  // heights between which there may be cloud
+  float highM() const { return slices_.edges.back(); }
   std::span<const int> layers() const { return layers_; }
 
   struct Bounds {
@@ -103,27 +103,38 @@ class MajorantGrid {
   bool walk(const CloudLine& line, float length, F&& f) const;
 
   static constexpr float kReachM = 1024e3f;  // of the grid from the eye, east and north
+  static bool isBeyond(const glm::vec3& q) { return std::max(std::abs(q.x), std::abs(q.y)) > kReachM; }
 
- private:
+  // The boxes themselves, for those who step from one to the next: cloud_walks.h.
+
   static constexpr float kTileM = 2048.0f;
-  static constexpr int kTiles = static_cast<int>(2.0f * kReachM / kTileM);  // a side
-  static constexpr int kVoxelsAcross = 4;                                   // a multiple of 4
-  static constexpr float kNudgeM = 2e-3f;                                   // over a side of a box
+  static constexpr int kVoxelsAcross = 4;  // a multiple of 4
+  static constexpr float kNudgeM = 2e-3f;  // over a side of a box
+  static constexpr float kGuideM = 10.0f;
   // A code has steps of the greatest extinction in its high byte and of the least in its low one. 0 is a box
   // that nobody has asked for.
   static constexpr std::uint16_t kUnknown = 0, kClear = 0x100;
 
-  struct Slice {
-    int voxelsHigh = 1;
-    float voxelM = 0.0f, voxelsPerM = 0.0f;  // of height
-    std::uint32_t lines = 0;                 // of the voxels of a brick
-    std::uint16_t layers = 0;
+  // Of each slice, from below.
+  struct Slices {
+    std::vector<float> edges;               // one more than there are slices
+    std::vector<float> voxelM, voxelsPerM;  // of height
+    std::vector<std::int32_t> voxelsHigh;
+    std::vector<std::uint32_t> lines;  // of the voxels of a brick
+    std::vector<std::uint16_t> layers;
+    // The slice of each kGuideM of height, or the first of them, so many as there are at most being further
+    // up.
+    std::vector<std::int32_t> guide;
+    float guideFromM = 0.0f;
+    std::int32_t last = 0, lastGuide = 0, mostInGuide = 0;
   };
+  const Slices& slices() const { return slices_; }
+  const std::array<float, 256>& steps() const { return steps_; }
+
   struct Free {
     void operator()(void* p) const { std::free(p); }
   };
   using Codes = std::unique_ptr<std::uint16_t[], Free>;
-  static Codes zeros(std::size_t n);
   struct Run {  // slices [low, high) without cloud; low == high: there may be
     std::uint16_t low = 0, high = 0;
   };
@@ -137,6 +148,26 @@ class MajorantGrid {
     // Of each brick, as they are blocked: where its voxels' codes are in voxels_, blocked; 0: nowhere yet.
     std::unique_ptr<std::atomic<std::uint32_t>[]> voxels;
   };
+  const Tile* tileAt(const glm::vec2& q) const;  // none: beyond reach
+
+  // What is known of a box, made if need be. brick: where it stands among its tile's, blocked.
+  std::uint16_t brickCode(const Tile& tile, std::size_t brick, const glm::ivec3& i) const {
+    return known(tile.bricks[brick], [&] { return brickBox(tile, i); });
+  }
+  // The codes of a brick's voxels, blocked; and one of them, whose voxel has its corner there.
+  std::uint16_t* voxelCodes(const Tile& tile, std::size_t brick, std::size_t slice) const {
+    return voxels_.at(tile.voxels[brick], slices_.lines[slice]);
+  }
+  std::uint16_t voxelCode(const Tile& tile, std::size_t slice, std::uint16_t& code,
+                          const glm::vec3& low) const {
+    return known(code, [&] {
+      return CloudBox{low, low + glm::vec3(tile.voxelM, tile.voxelM, slices_.voxelM[slice])};
+    });
+  }
+
+ private:
+  static constexpr int kTiles = static_cast<int>(2.0f * kReachM / kTileM);  // a side
+  static Codes zeros(std::size_t n);
   struct Brick {
     glm::vec3 low, sizeM, perM;  // of a voxel, and voxels a metre
     glm::ivec3 n;                // voxels
@@ -148,7 +179,6 @@ class MajorantGrid {
     const int block = ((i.z >> 1) * (across >> 2) + (i.y >> 2)) * (across >> 2) + (i.x >> 2);
     return static_cast<std::size_t>(block * 32 + (i.z & 1) * 16 + (i.y & 3) * 4 + (i.x & 3));
   }
-  const Tile* tileAt(const glm::vec3& q) const;  // none: beyond reach
   std::unique_ptr<Tile> makeTile(int x, int y) const;
   glm::ivec3 brickAt(const Tile& tile, const glm::vec3& q) const;
   int sliceAt(float z) const;
@@ -158,15 +188,16 @@ class MajorantGrid {
   CloudBox brickBox(const Tile& tile, const glm::ivec3& i) const {
     const auto k = static_cast<std::size_t>(i.z);
     const glm::vec2 low = tile.low + tile.brickM * glm::vec2(i.x, i.y);
-    return {{low.x, low.y, edges_[k]}, {low.x + tile.brickM, low.y + tile.brickM, edges_[k + 1]}};
+    return {{low.x, low.y, slices_.edges[k]},
+            {low.x + tile.brickM, low.y + tile.brickM, slices_.edges[k + 1]}};
   }
   Brick brickOf(const Tile& tile, const glm::ivec3& i) const {
-    const Slice& slice = slices_[static_cast<std::size_t>(i.z)];
+    const auto k = static_cast<std::size_t>(i.z);
     return {brickBox(tile, i).low,
-            {tile.voxelM, tile.voxelM, slice.voxelM},
-            {tile.voxelsPerM, tile.voxelsPerM, slice.voxelsPerM},
-            {kVoxelsAcross, kVoxelsAcross, slice.voxelsHigh},
-            voxels_.at(tile.voxels[blocked(i, tile.side)], slice.lines)};
+            {tile.voxelM, tile.voxelM, slices_.voxelM[k]},
+            {tile.voxelsPerM, tile.voxelsPerM, slices_.voxelsPerM[k]},
+            {kVoxelsAcross, kVoxelsAcross, slices_.voxelsHigh[k]},
+            voxels_.at(tile.voxels[blocked(i, tile.side)], slices_.lines[k])};
   }
   // What is known of a box, made if need be.
   template <class Box>
@@ -180,7 +211,7 @@ class MajorantGrid {
     return c;
   }
   std::uint16_t brickCode(const Tile& tile, const glm::ivec3& i) const {
-    return known(tile.bricks[blocked(i, tile.side)], [&] { return brickBox(tile, i); });
+    return brickCode(tile, blocked(i, tile.side), i);
   }
   std::uint16_t voxelCode(const Brick& brick, const glm::ivec3& i) const {
     return known(brick.codes[blocked(i, kVoxelsAcross)], [&] {
@@ -196,9 +227,7 @@ class MajorantGrid {
 
   CloudBounds bounds_;
   std::vector<int> layers_;
-  std::vector<float> edges_;  // of slices, rising
-  std::vector<Slice> slices_;
-  std::vector<int> sliceGuide_;
+  Slices slices_;
   std::array<float, 256> steps_{};  // of extinction, rising
   mutable std::vector<std::atomic<Tile*>> tiles_;
   mutable CodeLines voxels_;
@@ -209,14 +238,15 @@ template <class F>
 bool MajorantGrid::walk(const CloudLine& line, float length, F&& f) const {
   for (float t = 0.0f; t < length;) {
     const glm::vec3 q = line.from + line.slope * (t + kNudgeM);
-    const Tile* tile = tileAt(q);
+    const Tile* tile = tileAt(glm::vec2(q));
     if (!tile) return false;
     float end = length;
     for (int k = 0; k < 2; ++k)
       end = std::min(end, line.crosses(k, tile->low[k] + (line.inverse[k] > 0.0f ? kTileM : 0.0f)));
     const float before = t;
     if (const Run run = tile->clear[static_cast<std::size_t>(sliceAt(q.z))]; run.low < run.high) {
-      t = std::min(end, line.crosses(2, line.inverse.z > 0.0f ? edges_[run.high] : edges_[run.low]));
+      t = std::min(end,
+                   line.crosses(2, line.inverse.z > 0.0f ? slices_.edges[run.high] : slices_.edges[run.low]));
     } else if (walkTile(*tile, line, t, end, f)) {
       return true;
     }
@@ -228,7 +258,7 @@ bool MajorantGrid::walk(const CloudLine& line, float length, F&& f) const {
 // Leaves t where the line leaves the tile, or what is clear of it begins.
 template <class F>
 bool MajorantGrid::walkTile(const Tile& tile, const CloudLine& line, float& t, float end, F&& f) const {
-  const int slices = static_cast<int>(slices_.size());
+  const int slices = slices_.last + 1;
   glm::ivec3 i = brickAt(tile, line.from + line.slope * (t + kNudgeM)), turn;
   glm::vec3 next;   // where the line leaves through each side
   glm::vec2 apart;  // from side to side
@@ -238,7 +268,7 @@ bool MajorantGrid::walkTile(const Tile& tile, const CloudLine& line, float& t, f
     apart[k] = tile.brickM * std::abs(line.inverse[k]);
   }
   auto nextSlice = [&] {
-    return line.crosses(2, edges_[static_cast<std::size_t>(i.z + (turn.z > 0 ? 1 : 0))]);
+    return line.crosses(2, slices_.edges[static_cast<std::size_t>(i.z + (turn.z > 0 ? 1 : 0))]);
   };
   next.z = nextSlice();
   for (;;) {
@@ -250,10 +280,10 @@ bool MajorantGrid::walkTile(const Tile& tile, const CloudLine& line, float& t, f
         const Bounds bounds = boundsOf(code);
         if (bounds.majorant - bounds.minorant > tile.needless) {
           if (walkBrick(brickOf(tile, i), line, t, out, [&](const Bounds& b, float t0, float t1) {
-                return f(b, slices_[static_cast<std::size_t>(i.z)].layers, t0, t1);
+                return f(b, slices_.layers[static_cast<std::size_t>(i.z)], t0, t1);
               }))
             return true;
-        } else if (f(bounds, slices_[static_cast<std::size_t>(i.z)].layers, t, out)) {
+        } else if (f(bounds, slices_.layers[static_cast<std::size_t>(i.z)], t, out)) {
           return true;
         }
       }
