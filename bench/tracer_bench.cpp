@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <span>
 
 #include "welkin/core/colour.h"
 #include "welkin/core/error.h"
@@ -15,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPixelStride = 7;    // of all pixels in rows; odd, so that columns change
+constexpr int kPixelStride = 7;  // of all pixels in rows; odd, so that columns change
+constexpr std::size_t kPathsAtATime = 2048;
 constexpr double kDarkest = 0.01;  // of the mean of all pixels, for relative deviations, as SkyFilm has it
 
 double processorS() {
@@ -30,33 +32,42 @@ struct Events {
   double ofPaths = 0.0, chained = 0.0;
 };
 
-Pixel trace(const reference::SkyTracer& tracer, int x, int y, Events& events) {
-  double sum = 0.0, squares = 0.0;
-  for (std::uint64_t k = 0; k < kTracerPaths; ++k) {
-    const reference::SkySample s = tracer.trace(x, y, k);
-    const double l = luminanceOf(&s.luminance.x);
-    sum += l;
-    squares += l * l;
-    events.ofPaths += s.events;
-    events.chained += s.chained;
+// All pixels that are measured, some hundreds of paths at a time, as a film does it.
+std::vector<Pixel> trace(const reference::SkyTracer& tracer, Events& events) {
+  const int width = tracer.width(), count = width * tracer.height();
+  std::vector<Pixel> pixels;
+  std::vector<reference::PixelPath> paths;
+  for (int i = 0; i < count; i += kPixelStride) {
+    for (std::uint64_t k = 0; k < kTracerPaths; ++k) paths.push_back({i % width, i / width, k});
+    if (paths.size() < kPathsAtATime && i + kPixelStride < count) continue;
+    std::vector<reference::SkySample> samples(paths.size());
+    tracer.trace(paths, samples);
+    for (std::size_t first = 0; first < samples.size(); first += kTracerPaths) {
+      double sum = 0.0, squares = 0.0;
+      for (const reference::SkySample& s : std::span(samples).subspan(first, kTracerPaths)) {
+        const double l = luminanceOf(&s.luminance.x);
+        sum += l;
+        squares += l * l;
+        events.ofPaths += s.events;
+        events.chained += s.chained;
+      }
+      constexpr double n = kTracerPaths;
+      pixels.push_back({sum / n, std::max(squares / n - sum * sum / (n * n), 0.0) * n / (n - 1.0)});
+    }
+    paths.clear();
   }
-  constexpr double n = kTracerPaths;
-  return {sum / n, std::max(squares / n - sum * sum / (n * n), 0.0) * n / (n - 1.0)};
+  return pixels;
 }
 
 TracerRow measure(const scene::Scene& scene, std::uint64_t seed) {
   const scene::SkyState state = scene::buildSky(scene, scene.atS);
   const reference::SkyTracer tracer(state, {.seed = seed});
-  const int width = tracer.width(), count = width * tracer.height();
-
   TracerRow row;
-  std::vector<Pixel> pixels;
-  Events events;
+  Events bounded, events;
   const double begin = processorS();
-  for (int i = 0; i < count; i += kPixelStride) pixels.push_back(trace(tracer, i % width, i / width, events));
+  const std::vector<Pixel> pixels = trace(tracer, bounded);
   const double middle = processorS();
-  events = {};
-  for (int i = 0; i < count; i += kPixelStride) trace(tracer, i % width, i / width, events);
+  trace(tracer, events);
   const double seconds = processorS() - middle;
   row.boundsS = std::max(middle - begin - seconds, 0.0);
   const double paths = static_cast<double>(pixels.size()) * kTracerPaths;

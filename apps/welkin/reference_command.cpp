@@ -89,6 +89,14 @@ void keep(const std::string& path, const reference::SkyFilm& film, const std::st
                      {state.width, state.height, std::move(state.planes), std::move(state.texts), false});
 }
 
+// Of each pixel, before the noise is looked at again: enough for many threads, and no more than half of what
+// there is, so that little is traced in vain.
+std::int64_t pathsAtOnce(const reference::SkyFilm& film) {
+  constexpr std::int64_t kPaths = 131072;
+  const std::int64_t most = kPaths / (std::int64_t{film.width()} * film.height());
+  return std::clamp<std::int64_t>(film.samples() / 2, 1, std::max<std::int64_t>(most, 1));
+}
+
 // The same where a failure must not take the picture along: what went wrong, empty for nothing.
 std::string tryToKeep(const std::string& path, const reference::SkyFilm& film, const std::string& scene) {
   try {
@@ -157,7 +165,9 @@ int runReference(const RenderSettings& settings) {
   try {
     while (!enough()) {
       throwIfInterrupted();
-      film.addPass(tracer, throwIfInterrupted);
+      std::int64_t count = pathsAtOnce(film);
+      if (settings.spp) count = std::min(count, *settings.spp - film.samples());
+      film.addPaths(tracer, count, throwIfInterrupted);
       error = film.meanRelativeError();
       const auto samples = static_cast<double>(film.samples());
       double done = settings.spp ? samples / *settings.spp : 0.0;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/reference/sky_film.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "welkin/core/colour.h"
 #include "welkin/core/error.h"
@@ -15,7 +17,8 @@ namespace {
 
 constexpr std::array kNames = {"red", "green", "blue", "squares", "cloud"};
 constexpr const char *kSamplesKey = "welkin_samples", *kEventsKey = "welkin_events";
-constexpr double kDarkest = 0.01;  // of the mean of a picture, for relative errors
+constexpr std::size_t kPathsAtATime = 2048;  // of a thread
+constexpr double kDarkest = 0.01;            // of the mean of a picture, for relative errors
 
 // The nearest that two floats hold.
 double rounded(double x) {
@@ -37,26 +40,28 @@ std::uint64_t numberOf(const SkyFilm::State& state, const char* key) {
 SkyFilm::SkyFilm(int width, int height)
     : width_(width), height_(height), sums_(static_cast<std::size_t>(width) * height * kSums) {}
 
-void SkyFilm::addPass(const SkyTracer& tracer, const std::function<void()>& pause) {
-  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
-  constexpr std::size_t kGrain = 32;
-  std::vector<SkySample> pass(pixels);
-  const auto index = static_cast<std::uint64_t>(samples_);
-  parallelFor(pixels, kGrain, [&](std::size_t begin, std::size_t end) {
+void SkyFilm::addPaths(const SkyTracer& tracer, std::int64_t count, const std::function<void()>& pause) {
+  const std::size_t pixels = static_cast<std::size_t>(width_) * height_, n = static_cast<std::size_t>(count);
+  std::vector<SkySample> samples(pixels * n);
+  parallelFor(pixels, std::max<std::size_t>(kPathsAtATime / n, 1), [&](std::size_t begin, std::size_t end) {
     if (pause) pause();
+    std::vector<PixelPath> paths;
     for (std::size_t i = begin; i < end; ++i)
-      pass[i] = tracer.trace(static_cast<int>(i % static_cast<std::size_t>(width_)),
-                             static_cast<int>(i / static_cast<std::size_t>(width_)), index);
+      for (std::size_t k = 0; k < n; ++k)
+        paths.push_back({static_cast<int>(i % static_cast<std::size_t>(width_)),
+                         static_cast<int>(i / static_cast<std::size_t>(width_)),
+                         static_cast<std::uint64_t>(samples_) + k});
+    tracer.trace(paths, std::span(samples).subspan(begin * n, paths.size()));
   });
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const SkySample& s = pass[i];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const SkySample& s = samples[i];
     const double luminance = luminanceOf(&s.luminance.x);
     const double add[kSums] = {s.luminance.x, s.luminance.y, s.luminance.z, luminance * luminance,
                                s.cloud ? 1.0 : 0.0};
-    for (int k = 0; k < kSums; ++k) sum(i, k) = rounded(sum(i, k) + add[k]);
+    for (int k = 0; k < kSums; ++k) sum(i / n, k) = rounded(sum(i / n, k) + add[k]);
     events_ += s.events;
   }
-  ++samples_;
+  samples_ += count;
 }
 
 Image<float> SkyFilm::luminance() const {

@@ -23,9 +23,9 @@ class SkyFilm {
   std::int64_t samples() const { return samples_; }  // of every pixel
   std::uint64_t events() const { return events_; }   // of all samples
 
-  // One more path for every pixel, by parallelFor; the same on any number of threads. pause: called now and
-  // then from several threads; where it throws, the film is as it was.
-  void addPass(const SkyTracer& tracer, const std::function<void()>& pause = {});
+  // So many more paths for every pixel, by parallelFor; the same on any number of threads, and by however
+  // many calls. pause: called now and then from several threads; where it throws, the film is as it was.
+  void addPaths(const SkyTracer& tracer, std::int64_t count, const std::function<void()>& pause = {});
 
   Image<float> luminance() const;  // RGB, cd/m2
   Image<float> opacity() const;    // 1 channel: of the clouds, seen straight from the eye

@@ -9,9 +9,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 
 #include "welkin/reference/cloud_phases.h"
 #include "welkin/scene/sky_state.h"
@@ -23,13 +23,21 @@ struct SkySettings {
   DropletModel droplets = DropletModel::kFit;
 };
 
-// One path.
+// Path `index` of a pixel.
+struct PixelPath {
+  int x = 0, y = 0;
+  std::uint64_t index = 0;
+};
+
+// What one path finds.
 struct SkySample {
   glm::dvec3 luminance{0.0};  // cd/m2, linear Rec. 709
   bool cloud = false;        // the straight way from the eye ends in a cloud: the mean is the clouds' opacity
   std::uint32_t events = 0;  // scatterings, and reflections of the ground
   std::uint32_t chained = 0;  // scatterings besides, on chains of light from sun or moon
 };
+
+struct TracedSky;  // traced_sky.h
 
 class SkyTracer {
  public:
@@ -42,15 +50,16 @@ class SkyTracer {
   int width() const;
   int height() const;
 
-  // Path `index` of a pixel, a pure function of the seed and of these. Safe to call from several threads.
-  SkySample trace(int x, int y, std::uint64_t index) const;
+  // Each a pure function of the seed and of its path, whatever others are traced beside it; fastest for
+  // hundreds at a time. Safe to call from several threads. As many samples as paths.
+  void trace(std::span<const PixelPath> paths, std::span<SkySample> samples) const;
 
-  // The same for a direction from the eye, unit, east-north-up.
-  SkySample traceDirection(const glm::dvec3& direction, std::uint64_t index) const;
+  // The same for directions from the eye, unit, east-north-up: path first + i of the direction i.
+  void traceDirections(std::span<const glm::dvec3> directions, std::uint64_t first,
+                       std::span<SkySample> samples) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::unique_ptr<const TracedSky> sky_;
 };
 
 }  // namespace welkin::reference

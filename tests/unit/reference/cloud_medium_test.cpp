@@ -125,7 +125,7 @@ TEST(MajorantGrid, BoxesAreAsHighAsTheLayersAround) {
     }
     return most;
   };
-  EXPECT_LT(highest(both, layers[0].baseM, thinTopM), 60.0f);
+  EXPECT_LT(highest(both, layers[0].baseM, thinTopM), 90.0f);
   EXPECT_GT(highest(both, thinTopM, deepTopM), 0.9f * highest(alone, thinTopM, deepTopM));
 }
 

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/units.h"
 #include "welkin/reference/directions.h"
 #include "welkin/reference/sky_tracer.h"
@@ -34,10 +35,13 @@ TEST(CloudSource, IsWhatTheTracerSees) {
     constexpr int kPaths = 40000;
     double a = 0.0, a2 = 0.0, b = 0.0, b2 = 0.0, single = 0.0;
     Random random(5);
-    for (int i = 0; i < kPaths; ++i) {
-      const glm::dvec3 way =
-          glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, 0.2 + unit(random)));
-      const double seen = tracer.traceDirection(way, static_cast<std::uint64_t>(i)).luminance.x / kLux;
+    std::vector<glm::dvec3> ways;
+    for (int i = 0; i < kPaths; ++i)
+      ways.push_back(glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, 0.2 + unit(random))));
+    const std::vector<SkySample> samples = testing::traced(tracer, ways);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const glm::dvec3& way = ways[i];
+      const double seen = samples[i].luminance.x / kLux;
       a += seen, a2 += seen * seen;
       const Ray ray{{0.0, 0.0, state.scene.camera.eyeM}, way};
       const auto hit = medium.collide(ray, 400e3, random);

@@ -8,6 +8,7 @@
 
 #include "tests/testing/metaball_scene.h"
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/glsl.h"
 #include "welkin/optics/phase.h"
 #include "welkin/reference/directions.h"
@@ -159,8 +160,8 @@ TEST(SkyTracer, AThinBallScattersOnce) {
                          : 1.0 / (4.0 * kPi);
     double sum = 0.0, squares = 0.0;
     constexpr int kPaths = 60000;
-    for (int i = 0; i < kPaths; ++i) {
-      const double l = luminanceOf(tracer.traceDirection(way, static_cast<std::uint64_t>(i)).luminance);
+    for (const SkySample& sample : testing::traced(tracer, way, kPaths)) {
+      const double l = luminanceOf(sample.luminance);
       sum += l / kPaths;
       squares += l * l / kPaths;
     }
@@ -194,8 +195,7 @@ TEST(SkyTracer, ABallVanishesInUniformLight) {
   double sum = 0.0, squares = 0.0;
   int cloudy = 0;
   constexpr int kPaths = 2000;
-  for (int i = 0; i < kPaths; ++i) {
-    const SkySample sample = tracer.traceDirection(way, static_cast<std::uint64_t>(i));
+  for (const SkySample& sample : testing::traced(tracer, way, kPaths)) {
     const double l = luminanceOf(sample.luminance);
     sum += l / kPaths;
     squares += l * l / kPaths;
@@ -212,13 +212,13 @@ TEST(SkyTracer, TracesLayersOfMetaballs) {
   const SkyTracer tracer(scene::buildSky(s, 0.0), {});
   Random random(1);
   constexpr int kRays = 2000;
-  double cloudy = 0.0;
+  std::vector<glm::dvec3> ways;
   for (int i = 0; i < kRays; ++i) {
     const double z = unit(random), a = 2.0 * kPi * unit(random), flat = std::sqrt(1.0 - z * z);
-    const SkySample sample =
-        tracer.traceDirection({flat * std::cos(a), flat * std::sin(a), z}, static_cast<std::uint64_t>(i));
-    cloudy += sample.cloud ? 1.0 / kRays : 0.0;
+    ways.emplace_back(flat * std::cos(a), flat * std::sin(a), z);
   }
+  double cloudy = 0.0;
+  for (const SkySample& sample : testing::traced(tracer, ways)) cloudy += sample.cloud ? 1.0 / kRays : 0.0;
   EXPECT_NEAR(cloudy, 0.5, 0.12);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/units.h"
@@ -34,8 +35,8 @@ double luminanceOf(const glm::dvec3& c) {
 // The mean of paths in a direction.
 Estimate meanTowards(const SkyTracer& tracer, const glm::dvec3& direction, int paths) {
   double s = 0.0, s2 = 0.0;
-  for (int i = 0; i < paths; ++i) {
-    const double l = luminanceOf(tracer.traceDirection(direction, static_cast<std::uint64_t>(i)).luminance);
+  for (const SkySample& sample : testing::traced(tracer, direction, paths)) {
+    const double l = luminanceOf(sample.luminance);
     s += l;
     s2 += l * l;
   }
@@ -111,8 +112,7 @@ TEST(SkyTracer, WhiteFurnace) {
       const Estimate e = meanTowards(tracer, way, 350);
       EXPECT_NEAR(e.value, 1.0, 4.0 * e.error + 1e-6) << elevation << " degrees, air " << air;
       EXPECT_LT(e.error, 0.06);
-      for (std::uint64_t i = 0; i < 50; ++i) {
-        const SkySample sample = tracer.traceDirection(way, i);
+      for (const SkySample& sample : testing::traced(tracer, way, 50)) {
         scattered += static_cast<int>(sample.events);
         cloudy += sample.cloud ? 1 : 0;
       }
@@ -125,10 +125,11 @@ TEST(SkyTracer, WhiteFurnace) {
 // The illuminance of a plane that faces `up` by all that is seen from it, paths cosine-distributed.
 Estimate illuminanceFrom(const SkyTracer& tracer, double up, int paths) {
   Random random(17);
+  std::vector<glm::dvec3> ways;
+  for (int i = 0; i < paths; ++i) ways.push_back(lambertDirection({0.0, 0.0, up}, random));
   double s = 0.0, s2 = 0.0;
-  for (int i = 0; i < paths; ++i) {
-    const glm::dvec3 way = lambertDirection({0.0, 0.0, up}, random);
-    const double l = kPi * luminanceOf(tracer.traceDirection(way, static_cast<std::uint64_t>(i)).luminance);
+  for (const SkySample& sample : testing::traced(tracer, ways)) {
+    const double l = kPi * luminanceOf(sample.luminance);
     s += l / paths;
     s2 += l * l / paths;
   }
@@ -257,7 +258,7 @@ scene::SkyState smallSky() {
 
 SkyFilm filmOf(const SkyTracer& tracer, int passes) {
   SkyFilm film(tracer.width(), tracer.height());
-  for (int i = 0; i < passes; ++i) film.addPass(tracer);
+  film.addPaths(tracer, passes);
   return film;
 }
 
@@ -286,7 +287,7 @@ TEST(SkyFilm, GoesOnAsIfNothingHadHappened) {
   const SkyFilm whole = filmOf(tracer, 5);
   SkyFilm part = SkyFilm::fromState(filmOf(tracer, 2).state());
   EXPECT_EQ(part.samples(), 2);
-  for (int i = 0; i < 3; ++i) part.addPass(tracer);
+  for (int i = 0; i < 3; ++i) part.addPaths(tracer, 1);
   expectSame(whole, part);
   SkyFilm::State damaged = whole.state();
   damaged.planes.erase("sum.red");
@@ -331,12 +332,13 @@ TEST(SkyTracer, EveryProjectionHasItsPicture) {
                         0.0);
     const SkyTracer tracer(state, {});
     double all = 0.0;
-    for (int y = 0; y < tracer.height(); ++y)
-      for (int x = 0; x < tracer.width(); ++x) all += luminanceOf(tracer.trace(x, y, 0).luminance);
+    for (const SkySample& sample :
+         testing::tracedInTurn(tracer, tracer.width(), tracer.height(), tracer.width() * tracer.height()))
+      all += luminanceOf(sample.luminance);
     EXPECT_GT(all / (tracer.width() * tracer.height()), 300.0);
     // Outside the circle of a fisheye there is nothing.
     if (projection == scene::Projection::kFisheye) {
-      EXPECT_EQ(tracer.trace(0, 0, 0).luminance, glm::dvec3(0.0));
+      EXPECT_EQ(testing::traced(tracer, 0, 0, 1)[0].luminance, glm::dvec3(0.0));
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "tests/testing/live_frames.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/units.h"
 #include "welkin/reference/sky_tracer.h"
 #include "welkin/render/sky_renderer.h"
@@ -55,9 +56,8 @@ glm::dvec3 drawn(SkyRenderer& renderer, const scene::SkyState& state) {
 glm::dvec3 traced(const scene::SkyState& state, int paths) {
   const reference::SkyTracer tracer(state, {});
   glm::dvec3 sum(0.0);
-  for (int i = 0; i < paths; ++i)
-    sum += tracer.trace(i % kSide, i / kSide % kSide, static_cast<std::uint64_t>(i)).luminance /
-           static_cast<double>(paths);
+  for (const reference::SkySample& sample : testing::tracedInTurn(tracer, kSide, kSide, paths))
+    sum += sample.luminance / static_cast<double>(paths);
   return sum;
 }
 

@@ -10,6 +10,7 @@
 #include "tests/testing/metaball_scene.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/units.h"
 #include "welkin/reference/sky_film.h"
 #include "welkin/reference/sky_tracer.h"
@@ -59,11 +60,19 @@ double meanWithin(double share, F&& f) {
 Seen traced(const scene::SkyState& state, int passes) {
   const reference::SkyTracer tracer(state, {});
   Seen seen;
+  std::vector<reference::PixelPath> paths;
+  for (int i = 0; i < passes; ++i)
+    meanWithin(0.6, [&](int x, int y) {
+      paths.push_back({x, y, static_cast<std::uint64_t>(i)});
+      return 0.0;
+    });
+  const std::vector<reference::SkySample> samples = testing::traced(tracer, paths);
   double squares = 0.0;
+  std::size_t next = 0;
   for (int i = 0; i < passes; ++i) {
     double cloudy = 0.0;
-    const double l = meanWithin(0.6, [&](int x, int y) {
-      const reference::SkySample sample = tracer.trace(x, y, static_cast<std::uint64_t>(i));
+    const double l = meanWithin(0.6, [&](int, int) {
+      const reference::SkySample& sample = samples[next++];
       cloudy += sample.cloud ? 1.0 : 0.0;
       return 0.2126 * sample.luminance.x + 0.7152 * sample.luminance.y + 0.0722 * sample.luminance.z;
     });
@@ -155,8 +164,8 @@ TEST(MetaballTruth, AMarchHidesWhatTheFieldHides) {
     for (int x = 0; x < kSide; ++x) {
       double cloudy = 0.0;
       constexpr int kPaths = 1500;
-      for (int i = 0; i < kPaths; ++i)
-        cloudy += tracer.trace(x, y, static_cast<std::uint64_t>(i)).cloud ? 1.0 / kPaths : 0.0;
+      for (const reference::SkySample& sample : testing::traced(tracer, x, y, kPaths))
+        cloudy += sample.cloud ? 1.0 / kPaths : 0.0;
       const double seen = 1.0 - luminanceOf(pixel(marched, x, y));
       EXPECT_NEAR(seen, cloudy, 0.08) << x << ", " << y;
       difference += std::abs(seen - cloudy);

@@ -11,6 +11,7 @@
 #include "tests/testing/live_frames.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/units.h"
 #include "welkin/optics/rain_phase.h"
 #include "welkin/reference/cloud_phases.h"
@@ -69,8 +70,8 @@ Traced traced(const scene::SkyState& state, int paths) {
   const reference::SkyTracer tracer(state, {});
   Traced t;
   glm::dvec3 squares(0.0);
-  for (int i = 0; i < paths; ++i) {
-    const glm::dvec3 l = tracer.trace(i % kSide, i / kSide % kSide, static_cast<std::uint64_t>(i)).luminance;
+  for (const reference::SkySample& sample : testing::tracedInTurn(tracer, kSide, kSide, paths)) {
+    const glm::dvec3& l = sample.luminance;
     t.mean += l / static_cast<double>(paths);
     squares += l * l / static_cast<double>(paths);
   }
@@ -87,7 +88,7 @@ TEST(Rainbow, IsAsBrightAsTraced) {
     for (const double outDeg : {30.0, 41.8, 47.0, 60.0}) {
       const scene::SkyState state = lookingOut(rain, outDeg);
       const glm::dvec3 l = drawn(renderer, state);
-      const Traced truth = traced(state, 4000);
+      const Traced truth = traced(state, 6000);
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(l[c], truth.mean[c], 0.1 * truth.mean[c] + 3.0 * truth.error[c])
             << mmPerH << " mm/h, " << outDeg << " degrees, colour " << c;

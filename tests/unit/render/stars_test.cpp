@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/testing/skies.h"
+#include "tests/testing/traced.h"
 #include "welkin/core/colour.h"
 #include "welkin/core/glsl.h"
 #include "welkin/core/units.h"
@@ -135,8 +136,8 @@ TEST(StarPictures, OfTheReferenceRendererHoldTheSameLight) {
   const reference::SkyTracer tracer(state, {});
   const double traced = lightIn(state, [&](int x, int y) {
     double sum = 0.0;
-    for (std::uint64_t i = 0; i < 8; ++i) {
-      const glm::vec3 l(tracer.trace(x, y, i).luminance);
+    for (const reference::SkySample& sample : testing::traced(tracer, x, y, 8)) {
+      const glm::vec3 l(sample.luminance);
       sum += luminanceOf(&l.x) / 8.0;
     }
     return sum;
@@ -252,8 +253,8 @@ TEST(StarPictures, ShowVenusBeforeSunset) {
     double sum = 0.0;
     for (int y = 24; y < 40; ++y)
       for (int x = 24; x < 40; ++x)
-        for (std::uint64_t i = 0; i < 16; ++i) {
-          const glm::vec3 l(tracer.trace(x, y, i).luminance);
+        for (const reference::SkySample& sample : testing::traced(tracer, x, y, 16)) {
+          const glm::vec3 l(sample.luminance);
           sum += luminanceOf(&l.x) / 16.0 * solidAngle(p, x, y);
         }
     return sum;
