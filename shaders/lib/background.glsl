@@ -7,6 +7,7 @@
 
 #include "lib/ground.glsl"
 #include "lib/milky_way.glsl"
+#include "lib/moon.glsl"
 #include "lib/stars.glsl"
 
 uniform vec3 uGroundAlbedo;
@@ -14,7 +15,7 @@ uniform vec3 uSkyOnGround;        // illuminance of the ground by the sky, cloud
 uniform float uDiscs;             // 1: draw the discs
 uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, cd/m2
 uniform float uSunRadius;         // rad
-uniform vec3 uMoonLuminance;      // of the fully lit part
+uniform vec3 uMoonLuminance;      // of what lib/moon.glsl has shares of
 uniform float uMoonRadius;
 #ifdef WELKIN_BEYOND
 uniform mat3 uCelestialFromEnu;
@@ -68,15 +69,18 @@ vec3 sunDisc(vec3 dir, float pixelRad) {
   return uSunLuminance * (disc.share * limb);
 }
 
-// The moon's disc, lit by the sun as a dusty sphere (Lommel-Seeliger); the dark part keeps a trace of earthshine.
+// The moon's disc: even where pixels are as large as it, so that it keeps its light, with its phase where they are smaller.
 vec3 moonDisc(vec3 dir, float pixelRad) {
+  if (length(dir - uMoonDirection) > uMoonRadius + 1.5 * pixelRad) return vec3(0.0);
   Disc disc = discAt(dir, uMoonDirection, uMoonRadius, pixelRad);
-  if (disc.share <= 0.0) return vec3(0.0);
-  vec3 across = dir - uMoonDirection * dot(dir, uMoonDirection);
-  float mu = sqrt(1.0 - disc.x * disc.x);
-  vec3 normal = normalize(across + 1e-9) * disc.x - uMoonDirection * mu;
-  float mu0 = max(dot(normal, uSunDirection), 0.0);
-  return uMoonLuminance * disc.share * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+  float cosSun = dot(uSunDirection, uMoonDirection), pixels = uMoonRadius / pixelRad;
+  vec2 phase = moonPhase(-cosSun);
+  vec3 sunwards = normalize(uSunDirection - cosSun * uMoonDirection + 1e-9);
+  vec3 across = (dir - uMoonDirection) / uMoonRadius;
+  vec2 at = vec2(dot(across, sunwards), dot(across, cross(uMoonDirection, sunwards)));
+  float fine = smoothstep(1.0, 2.0, pixels), lit = (1.0 - fine) * disc.share * moonMean(phase);
+  if (fine > 0.0) lit += fine * moonSquare(at, 1.0 / pixels, phase);
+  return uMoonLuminance * (lit + disc.share * kEarthshine);
 }
 
 // Stars, planets and the Milky Way above the atmosphere, behind the moon.

@@ -133,12 +133,12 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uDroplets.alpha", droplets.alpha);
   u.put("", "uDroplets.wDraine", droplets.wDraine);
 
-  // Discs: illuminance spread over the disc's solid angle. The moon's is its full phase's, dimmed by the lit
-  // share as drawn.
+  // Discs: illuminance spread over the disc's solid angle. The moon's is that which the drawn phase dims to
+  // the mean.
   const sky::Ephemeris& e = state.ephemeris;
   const sky::Light sun = sky::sunLight(e), moon = sky::moonLight(e);
   auto discLuminance = [](const sky::Light& light, double radius, double share) {
-    return light.illuminance / static_cast<float>(kPi * radius * radius * std::max(share, 0.005));
+    return light.illuminance / static_cast<float>(kPi * radius * radius * share);
   };
   u.put("", "uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
   u.put("", "uCelestialFromEnu", glm::mat3(glm::transpose(e.enuFromCelestial)));
@@ -147,7 +147,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));
   u.put("", "uMoonDirection", moon.direction);
   u.put("", "uMoonRadius", static_cast<float>(e.moon.angularRadiusRad));
-  u.put("", "uMoonLuminance", discLuminance(moon, e.moon.angularRadiusRad, e.moonIlluminatedFraction));
+  u.put("", "uMoonLuminance",
+        discLuminance(moon, e.moon.angularRadiusRad, sky::moonDiscMean(e.moonPhaseAngleRad)));
 }
 
 void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table) {

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/sky/light.h"
 
+#include <cmath>
+
 #include "welkin/core/colour.h"
+#include "welkin/core/glsl.h"
 
 namespace welkin::sky {
 namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+#include "shaders/lib/moon.glsl"
+}  // namespace shared
 
 // The triple scaled to photometric weight 1.
 glm::vec3 unitLuminance(glm::vec3 c) {
@@ -19,6 +27,11 @@ glm::vec3 sunlightColour() {
 
 glm::vec3 moonlightColour() {
   return unitLuminance(sunlightColour() * glm::vec3(1.157f, 0.990f, 0.799f));
+}
+
+double moonDiscMean(double phaseAngleRad) {
+  const glm::vec2 phase = shared::moonPhase(static_cast<float>(std::cos(phaseAngleRad)));
+  return static_cast<double>(shared::moonMean(phase)) + static_cast<double>(shared::kEarthshine);
 }
 
 Light sunLight(const Ephemeris& e) {

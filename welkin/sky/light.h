@@ -20,6 +20,10 @@ struct Light {
 glm::vec3 sunlightColour();
 glm::vec3 moonlightColour();
 
+// Mean luminance of the moon's disc at a phase angle, of which the full moon's is 1: as shaders/lib/moon.glsl
+// draws it, with its earthshine.
+double moonDiscMean(double phaseAngleRad);
+
 Light sunLight(const Ephemeris& e);
 Light moonLight(const Ephemeris& e);
 

@@ -3,12 +3,16 @@
 // send.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "welkin/core/units.h"
+#include "welkin/core/utc_time.h"
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
+#include "welkin/sky/ephemeris.h"
 
 namespace welkin::render {
 namespace {
@@ -39,6 +43,16 @@ class EnvironmentMap : public ::testing::Test {
     state.scene.output.sunDisc = discs;
     return luminanceOf(horizontalIlluminance(renderer.draw(state).luminance));
   }
+
+  // Luminance of a small perspective picture times its solid angle.
+  static double lightOf(scene::SkyState state, bool discs) {
+    static SkyRenderer renderer;
+    state.scene.output.sunDisc = discs;
+    const Image<float> picture = renderer.draw(state).luminance;
+    const double width = 2.0 * std::tan(0.5 * radians(state.scene.camera.fovDeg));
+    const double pixels = static_cast<double>(picture.width) * picture.height;
+    return luminanceOf(meanOf(picture)) * pixels * std::pow(width / picture.width, 2);
+  }
 };
 
 // The sun is 0.53 degrees wide: 1.5 pixels of the largest map here and a twentieth of one of the smallest.
@@ -61,13 +75,39 @@ TEST_F(EnvironmentMap, LeavesTheSunOutOnRequest) {
   }
 }
 
-TEST_F(EnvironmentMap, SendsTheLightOfTheMoon) {
-  const scene::SkyState state = scene::buildSky(moonlitScene(), 0.0);
-  const Light expected = expectedOf(state);
-  for (const int height : {256, 64})
-    EXPECT_NEAR((illuminance(state, height, true) - illuminance(state, height, false)) / expected.direct, 1.0,
-                0.05)
-        << height;
+// The full moon, a half moon and two crescents in the dusk, the last one low. Of the largest map here the
+// moon is 1.5 pixels wide.
+TEST_F(EnvironmentMap, SendsTheLightOfTheMoonAtAnyPhaseAndSize) {
+  for (const char* time :
+       {"2026-12-24T00:30:00Z", "2026-12-17T20:00:00Z", "2026-12-13T18:00:00Z", "2026-12-13T19:30:00Z"}) {
+    scene::Scene scene = moonlitScene();
+    scene.time = parseUtcTime(time);
+    const scene::SkyState state = scene::buildSky(scene, 0.0);
+    const Light expected = expectedOf(state);
+    for (const int height : {512, 256, 64})
+      EXPECT_NEAR((illuminance(state, height, true) - illuminance(state, height, false)) / expected.direct,
+                  1.0, 0.05)
+          << time << ", " << height;
+  }
+}
+
+// Its pixels are 1/2 to 1/40 of the disc's radius.
+TEST_F(EnvironmentMap, TelephotoOfTheMoonHasItsLightAtAnyPhase) {
+  constexpr int kWidth = 160, kHeight = 90;
+  for (const char* time : {"2026-12-24T00:30:00Z", "2026-12-17T20:00:00Z", "2026-12-13T18:00:00Z"})
+    for (const double fovDeg : {1.0, 4.0, 20.0}) {
+      scene::Scene scene = sized(moonlitScene(), kWidth, kHeight);
+      scene.time = parseUtcTime(time);
+      const sky::Ephemeris e = sky::ephemeris(scene.time, {kTestLatitudeDeg, 0.0, 0.0});
+      scene::SkyState state =
+          scene::buildSky(looking(scene, e.moon.azimuthDeg, e.moon.elevationDeg, fovDeg), 0.0);
+      const double altitude = state.scene.place.altitudeM + kEyeM;
+      const double expected =
+          luminanceOf(sky::moonLight(e).illuminance * state.atmosphere->transmittanceToSpace(
+                                                          altitude, static_cast<float>(e.moon.direction.z)));
+      const double with = lightOf(state, true), without = lightOf(state, false);
+      EXPECT_NEAR((with - without) / expected, 1.0, 0.05) << time << ", " << fovDeg;
+    }
 }
 
 }  // namespace
