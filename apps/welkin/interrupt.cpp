@@ -32,6 +32,10 @@ void takeFileLimitsAsErrors() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+void seeHowProgramsEnd() {
+  std::signal(SIGCHLD, SIG_DFL);
+}
+
 void throwIfInterrupted() {
   if (interrupted) throw Interrupted();
 }

@@ -12,6 +12,10 @@ void catchInterrupts();
 // program amid it.
 void takeFileLimitsAsErrors();
 
+// Programs that are called, ffmpeg for one, can be told to have failed: who started this one may have had
+// that ignored.
+void seeHowProgramsEnd();
+
 // Throws Interrupted once the flag is set.
 void throwIfInterrupted();
 

@@ -107,5 +107,6 @@ int runProgram(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   welkin::app::takeFileLimitsAsErrors();
+  welkin::app::seeHowProgramsEnd();
   return welkin::app::runProgram(argc, argv);
 }

@@ -2,6 +2,7 @@
 """Video through ffmpeg."""
 import json
 import shutil
+import signal
 import subprocess
 import unittest
 
@@ -28,6 +29,14 @@ class Video(ProgramTest):
             self.assertEqual(len(frames), 5)
             self.assertEqual(frames[1]["time"], "2026-06-21T12:20:06Z")
         self.assertEqual(self.files(), ["r.json", "x.mp4", "x.webm"])
+
+    def test_started_by_one_who_ignores_children(self):
+        before = signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # children inherit it
+        try:
+            self.run_program("render", *CUMULUS, *TINY, "-o", "x.mp4", "--frames", "2", "--fps", "10")
+        finally:
+            signal.signal(signal.SIGCHLD, before)
+        self.assertEqual(self.probe("x.mp4")["nb_read_frames"], "2")
 
 
 if __name__ == "__main__":

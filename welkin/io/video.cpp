@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <deque>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -117,13 +118,15 @@ struct VideoWriter::Impl {
     }
   }
 
-  // Ends when ffmpeg has. Returns what waitpid says.
-  int wait() {
+  // Ends when ffmpeg has. Returns how it ended, where the system says so.
+  std::optional<int> wait() {
     int status = 0;
-    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-    }
+    pid_t ended = 0;
+    do {
+      ended = waitpid(process, &status, 0);
+    } while (ended < 0 && errno == EINTR);
     process = -1;
-    return status;
+    return ended < 0 ? std::nullopt : std::optional(status);
   }
 
   [[noreturn]] void fail(const std::string& why) const {
@@ -131,9 +134,11 @@ struct VideoWriter::Impl {
   }
 
   // After ffmpeg has ended: its own explanation.
-  [[noreturn]] void failWithLastWords(int status) const {
-    const std::string how = WIFSIGNALED(status) ? "was killed by signal " + std::to_string(WTERMSIG(status))
-                                                : "ended with code " + std::to_string(WEXITSTATUS(status));
+  [[noreturn]] void failWithLastWords(std::optional<int> status) const {
+    const std::string how = !status ? "ended, and how is unknown, as in a process that ignores SIGCHLD"
+                            : WIFSIGNALED(*status)
+                                ? "was killed by signal " + std::to_string(WTERMSIG(*status))
+                                : "ended with code " + std::to_string(WEXITSTATUS(*status));
     const std::string words = lastLines(messages.get());
     fail("ffmpeg " + how + (words.empty() ? "" : ":\n  " + words));
   }
@@ -224,8 +229,8 @@ void VideoWriter::close() {
   if (!impl_->any) impl_->fail("a video needs at least one frame");
   if (impl_->process <= 0) impl_->fail("ffmpeg has ended already");
   impl_->frames.reset();  // the end of its input
-  const int status = impl_->wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) impl_->failWithLastWords(status);
+  const std::optional<int> status = impl_->wait();
+  if (!status || !WIFEXITED(*status) || WEXITSTATUS(*status) != 0) impl_->failWithLastWords(status);
   impl_->file.commit();
 }
 

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include <csignal>
 #include <optional>
 #include <thread>
 
@@ -158,6 +159,16 @@ TEST_F(Video, FfmpegThatEndsEarlyIsAnError) {
       messageOf<IoError>([&] { writeVideo(folder / "a.webm", 100, 640, 360); }).find("killed by signal 9"),
       std::string::npos);
   EXPECT_EQ(fileCount(), 1);
+}
+
+// Where SIGCHLD is ignored nobody can tell whether ffmpeg wrote all of the file.
+TEST_F(Video, EndThatCannotBeSeenIsAnError) {
+  replaceFfmpeg("cat >/dev/null; exit 7");
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  const std::string message = messageOf<IoError>([&] { writeVideo(folder / "a.mp4", 1); });
+  std::signal(SIGCHLD, before);
+  EXPECT_NE(message.find("ignores SIGCHLD"), std::string::npos) << message;
+  EXPECT_EQ(fileCount(), 1);  // bin
 }
 
 }  // namespace
