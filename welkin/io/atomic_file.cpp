@@ -46,13 +46,17 @@ void unregisterUnfinished(int& slot) {
   slot = -1;
 }
 
-// The file that a path means after following symbolic links, so that a rename replaces the file and not the
-// link.
-std::filesystem::path followLinks(const std::filesystem::path& path) {
+// The file that a path means after following symbolic links, which need not exist yet, so that a rename
+// replaces the file and not the link. Where links go round it is one of them.
+std::filesystem::path followLinks(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
   std::error_code error;
-  if (!std::filesystem::is_symlink(path, error)) return path;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
-  return error ? path : target;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+    const std::filesystem::path target = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;  // an absolute target stands alone
+  }
+  return path;
 }
 
 }  // namespace
@@ -62,6 +66,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), final_(
   if (path_.filename().empty()) fail(EISDIR);
   struct stat status{};
   const bool exists = stat(final_.c_str(), &status) == 0;
+  if (!exists && errno == ELOOP) fail(ELOOP);
   if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
   if (exists && access(final_.c_str(), W_OK) != 0) fail(errno);
   direct_ = exists && !S_ISREG(status.st_mode);

@@ -104,6 +104,32 @@ TEST_F(AtomicFileTest, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(folder / "real").permissions(), std::filesystem::perms(0640));
 }
 
+TEST_F(AtomicFileTest, FollowsLinksToFilesThatAreNotYet) {
+  std::filesystem::create_directory(folder / "there");
+  std::filesystem::create_symlink("there/second", folder / "first");
+  std::filesystem::create_symlink("../file", folder / "there/second");
+  writeTextFile(folder / "first", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "first"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "there/second"));
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "file"));
+  EXPECT_EQ(contents(folder / "file"), "new");
+
+  const std::filesystem::path elsewhere = folder / "absolute";
+  std::filesystem::create_symlink(folder / "other", elsewhere);
+  writeTextFile(elsewhere, "other");
+  EXPECT_TRUE(std::filesystem::is_symlink(elsewhere));
+  EXPECT_EQ(contents(folder / "other"), "other");
+}
+
+TEST_F(AtomicFileTest, LinksThatGoRoundAreAnError) {
+  std::filesystem::create_symlink("b", folder / "a");
+  std::filesystem::create_symlink("a", folder / "b");
+  EXPECT_NE(messageOf<IoError>([&] { writeTextFile(folder / "a", "x"); }).find("symbolic links"),
+            std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "a"));
+  EXPECT_EQ(fileCount(), 2);
+}
+
 TEST_F(AtomicFileTest, TwoWritersOfOnePathDoNotMeet) {
   const auto path = folder / "a";
   AtomicFile first(path), second(path);
