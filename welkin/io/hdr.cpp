@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -97,11 +98,13 @@ class Reader {
     constexpr std::string_view kFirst = "-Y ", kSecond = " +X ";
     int height = 0, width = 0;
     const char* const end = text.data() + text.size();
+    bool whole = false;
     if (text.starts_with(kFirst)) {
       const char* at = std::from_chars(text.data() + kFirst.size(), end, height).ptr;
-      if (std::string_view(at, end).starts_with(kSecond)) std::from_chars(at + kSecond.size(), end, width);
+      if (std::string_view(at, end).starts_with(kSecond))
+        whole = std::from_chars(at + kSecond.size(), end, width).ptr == end;
     }
-    if (width < 1 || height < 1) fail("expected a size such as -Y 720 +X 1280");
+    if (!whole || width < 1 || height < 1) fail("expected a size such as -Y 720 +X 1280");
     return {width, height};
   }
   std::size_t left() const { return left_.size(); }
@@ -110,6 +113,19 @@ class Reader {
   std::string_view left_;
   std::string path_;
 };
+
+// What a line EXPOSURE= says that values have been multiplied by; 1 for other lines.
+double exposureOf(const Reader& in, std::string_view line) {
+  constexpr std::string_view kName = "EXPOSURE=";
+  if (!line.starts_with(kName)) return 1.0;
+  line.remove_prefix(std::min(line.find_first_not_of(' ', kName.size()), line.size()));
+  double exposure = 0.0;
+  const char *const begin = line.data(), *const end = begin + line.size();
+  const char* const read = std::from_chars(begin, end, exposure).ptr;
+  if (std::string_view(read, end).find_first_not_of(" \t\r") != std::string_view::npos || !(exposure > 0.0))
+    in.fail("expected a number above 0 after EXPOSURE=");
+  return exposure;
+}
 
 void readRow(Reader& in, std::vector<Rgbe>& row) {
   const int width = static_cast<int>(row.size());
@@ -171,8 +187,12 @@ Image<float> readHdr(const std::filesystem::path& path) {
   Reader in(bytes, path.string());
   if (!in.line().starts_with("#?")) in.fail("this is no Radiance picture");
   bool rgbe = false;
-  for (std::string line = in.line(); !line.empty(); line = in.line())
+  double exposure = 1.0;
+  for (std::string line = in.line(); !line.empty(); line = in.line()) {
     rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
+    exposure *= exposureOf(in, line);
+  }
+  if (!(exposure > 0.0 && std::isfinite(exposure))) in.fail("EXPOSURE is beyond the range of numbers");
   if (!rgbe) in.fail("expected FORMAT=32-bit_rle_rgbe");
   const auto [width, height] = in.size();
   // What the shortest rows need: a bound on what the sizes may claim.
@@ -188,10 +208,12 @@ Image<float> readHdr(const std::filesystem::path& path) {
     readRow(in, row);
     for (int x = 0; x < width; ++x) {
       const Rgbe& pixel = row[static_cast<std::size_t>(x)];
-      for (int c = 0; c < 3; ++c)
-        image.at(x, y, c) = pixel[3] == 0 ? 0.0f
-                                          : std::ldexp(static_cast<float>(pixel[static_cast<std::size_t>(c)]),
-                                                       pixel[3] - kExponentBias);
+      for (int c = 0; c < 3 && pixel[3] != 0; ++c) {
+        const double mantissa = pixel[static_cast<std::size_t>(c)];
+        const double value = std::ldexp(mantissa, pixel[3] - kExponentBias) / exposure;
+        if (value > std::numeric_limits<float>::max()) in.fail("a value over EXPOSURE is too large");
+        image.at(x, y, c) = static_cast<float>(value);
+      }
     }
   }
   return image;

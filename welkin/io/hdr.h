@@ -19,8 +19,8 @@ namespace welkin::io {
 // pixels.
 void writeHdr(const std::filesystem::path& path, const Image<float>& image);
 
-// Pictures in the usual orientation (-Y +X), with or without run-length coding of the newer kind. Throws
-// IoError for all else.
+// Pictures in the usual orientation (-Y +X), with or without run-length coding of the newer kind; values are
+// those before the multiplications that lines of EXPOSURE= state. Throws IoError for all else.
 Image<float> readHdr(const std::filesystem::path& path);
 
 }  // namespace welkin::io

@@ -229,6 +229,24 @@ TEST_F(ImageFiles, HdrIsReadByOthers) {
             "HDR 40 20 50 25 25");
 }
 
+// "EXPOSURE= a multiplier that has been applied to all the pixels": several lines multiply (Radiance's "File
+// Formats").
+TEST_F(ImageFiles, HdrValuesAreThoseBeforeExposure) {
+  const auto read = [&](const std::string& lines, const std::string& size = "-Y 1 +X 1") {
+    std::ofstream(folder / "a.hdr", std::ios::binary)
+        << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n" + size + "\n\x80\x40\x20\x81";
+    return readHdr(folder / "a.hdr").data;
+  };
+  EXPECT_EQ(read(""), (std::vector<float>{1.0f, 0.5f, 0.25f}));
+  EXPECT_EQ(read("EXPOSURE=0.5\n"), (std::vector<float>{2.0f, 1.0f, 0.5f}));
+  EXPECT_EQ(read("EXPOSURE= 4\nEXPOSURE=  5.000000e-01\n"), (std::vector<float>{0.5f, 0.25f, 0.125f}));
+  for (const char* bad : {"EXPOSURE=\n", "EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=two\n", "EXPOSURE=2x\n",
+                          "EXPOSURE=nan\n", "EXPOSURE=inf\n", "EXPOSURE=1e-300\n"})
+    EXPECT_THROW(read(bad), IoError) << bad;
+  for (const char* bad : {"-Y 1 +X 1junk", "-Y 1junk +X 1", "-Y 1 +X 1 1"})
+    EXPECT_THROW(read("", bad), IoError) << bad;
+}
+
 TEST_F(ImageFiles, HdrErrors) {
   EXPECT_THROW(writeHdr("/dev/full", randomLight(64, 64, 3)), IoError);
   EXPECT_THROW(writeHdr(folder / "a.hdr", randomLight(4, 4, 1)), ParameterError);
