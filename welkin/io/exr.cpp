@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -62,6 +61,13 @@ Imf::FrameBuffer frameBuffer(T* origin, Imf::PixelType type, int width, int chan
   return buffer;
 }
 
+void requireSides(const std::filesystem::path& path, int width, int height) {
+  if (width < 1 || height < 1 || std::max(width, height) > kLargestSide)
+    throw ParameterError("cannot write " + path.string() + ": an EXR has 1 to " +
+                         std::to_string(kLargestSide) + " pixels a side; got " + std::to_string(width) + "x" +
+                         std::to_string(height));
+}
+
 void addMetadata(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
                  Imf::Header& header) {
   for (const auto& [key, text] : metadata) {
@@ -98,13 +104,9 @@ void writeFile(const std::filesystem::path& path, const Imf::Header& header, con
 }  // namespace
 
 void writeExr(const std::filesystem::path& path, const Image<float>& image, const ExrOptions& options) {
-  if (image.width < 1 || image.height < 1 ||
-      (image.channels != 1 && image.channels != 3 && image.channels != 4))
-    throw ParameterError("cannot write " + path.string() +
-                         ": an EXR has at least one pixel and 1, 3 or 4 channels");
-  if (std::max(image.width, image.height) > kLargestSide)
-    throw ParameterError("cannot write " + path.string() + ": an EXR has at most " +
-                         std::to_string(kLargestSide) + " pixels a side");
+  requireSides(path, image.width, image.height);
+  if (image.channels != 1 && image.channels != 3 && image.channels != 4)
+    throw ParameterError("cannot write " + path.string() + ": an EXR has 1, 3 or 4 channels");
   requireFinite(image);
   const bool fits =
       std::all_of(image.data.begin(), image.data.end(), [](float x) { return std::abs(x) <= kLargestHalf; });
@@ -131,9 +133,10 @@ void writeExr(const std::filesystem::path& path, const Image<float>& image, cons
 }
 
 void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& p) {
-  const std::size_t pixels = static_cast<std::size_t>(std::max(p.width, 0)) * std::max(p.height, 0);
-  if (pixels == 0 || p.planes.empty())
-    throw ParameterError("cannot write " + path.string() + ": an EXR has at least one pixel and one channel");
+  requireSides(path, p.width, p.height);
+  if (p.planes.empty())
+    throw ParameterError("cannot write " + path.string() + ": an EXR has at least one channel");
+  const std::size_t pixels = static_cast<std::size_t>(p.width) * static_cast<std::size_t>(p.height);
   Imf::Header header(p.width, p.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::addChromaticities(header, Imf::Chromaticities());
@@ -144,7 +147,9 @@ void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& p) {
   std::vector<std::vector<half>> halves;
   Imf::FrameBuffer buffer;
   for (const auto& [name, values] : p.planes) {
-    assert(values.size() == pixels);
+    if (values.size() != pixels)
+      throw ParameterError("cannot write " + path.string() + ": channel " + name + " has " +
+                           std::to_string(values.size()) + " values; expected " + std::to_string(pixels));
     Image<float> plane(p.width, p.height, 1);
     plane.data = values;
     requireFinite(plane);
@@ -253,8 +258,6 @@ class InStream : public Imf::IStream {
   InputFile& file_;
 };
 
-// Rows are read and appended chunk by chunk, so that a header that promises more than the file has gets no
-// further than the file goes.
 // Calls f(first, last) for some rows at a time, from the top.
 template <class F>
 void inChunks(const Imath::Box2i& window, F&& f) {
@@ -278,6 +281,8 @@ std::map<std::string, std::string> textsOf(const Imf::Header& header) {
   return texts;
 }
 
+// Rows are read and appended chunk by chunk, so that a header that promises more than the file has gets no
+// further than the file goes.
 template <class T>
 void readRows(Imf::InputFile& in, Imf::PixelType type, const Imath::Box2i& window, int channels,
               std::vector<std::byte>& bytes) {

@@ -47,11 +47,13 @@ Texels readExrTexels(const std::filesystem::path& path);
 // show as layers.
 struct ExrPlanes {
   int width = 0, height = 0;
-  std::map<std::string, std::vector<float>> planes;  // row by row from the top; one at least
+  std::map<std::string, std::vector<float>>
+      planes;  // one at least, each of all pixels row by row from the top
   std::map<std::string, std::string> metadata;
   bool half = false;  // writes halves, values beyond their range clamped; after reading: all were
 };
-void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& planes);  // throws as writeExr()
-ExrPlanes readExrPlanes(const std::filesystem::path& path);                       // as readExr()
+// Throws as writeExr(), and ParameterError for no planes and for those of another size.
+void writeExrPlanes(const std::filesystem::path& path, const ExrPlanes& planes);
+ExrPlanes readExrPlanes(const std::filesystem::path& path);  // throws as readExr()
 
 }  // namespace welkin::io

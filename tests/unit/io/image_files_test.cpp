@@ -186,6 +186,25 @@ TEST_F(ImageFiles, ExrErrors) {
   EXPECT_THROW(readExr(folder / "c.exr"), IoError);
 }
 
+TEST_F(ImageFiles, ExrPlanesHaveTheSizeOfThePicture) {
+  ExrPlanes planes{.width = 3, .height = 2, .planes = {{"x", {1, 2, 3, 4, 5, 6}}}, .metadata = {}};
+  writeExrPlanes(folder / "a.exr", planes);
+  EXPECT_EQ(readExrPlanes(folder / "a.exr").planes, planes.planes);
+  planes.planes["y"] = {1, 2, 3, 4, 5};
+  EXPECT_NE(messageOf<ParameterError>([&] {
+              writeExrPlanes(folder / "b.exr", planes);
+            }).find("channel y has 5 values; expected 6"),
+            std::string::npos);
+  for (const auto& [width, height] : {std::pair(65537, 1), {1, 65537}, {0, 5}, {-1, -1}}) {
+    ExrPlanes bad{
+        .width = width, .height = height, .planes = {{"x", std::vector<float>(65537)}}, .metadata = {}};
+    EXPECT_THROW(writeExrPlanes(folder / "b.exr", bad), ParameterError) << width << "x" << height;
+  }
+  EXPECT_THROW(writeExrPlanes(folder / "b.exr", {.width = 1, .height = 1, .planes = {}, .metadata = {}}),
+               ParameterError);
+  EXPECT_EQ(fileCount(), 1);
+}
+
 TEST_F(ImageFiles, HdrRoundTripsToItsPrecision) {
   for (const int width : {1, 7, 8, 9, 300, 1500}) {  // with and without run-length coding
     Image<float> light = randomLight(width, 5, 3);
