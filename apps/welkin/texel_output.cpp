@@ -18,10 +18,6 @@ namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 16;
 
-bool isInteger(io::ValueType type) {
-  return type == io::ValueType::kUnorm8 || type == io::ValueType::kUnorm16;
-}
-
 glm::ivec2 tilesOf(const Flag& tile) {
   if (!tile) return glm::ivec2(1);
   glm::ivec2 n(0);

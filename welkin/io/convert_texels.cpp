@@ -10,9 +10,6 @@
 namespace welkin::io {
 namespace {
 
-bool isInteger(ValueType type) {
-  return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;
-}
 bool hasAlpha(Channels c) {
   return c == Channels::kLa || c == Channels::kRgba;
 }

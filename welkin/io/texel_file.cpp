@@ -25,10 +25,6 @@ namespace {
 constexpr std::array<Channels, 6> kAllChannels = {Channels::kL,  Channels::kR,   Channels::kA,
                                                   Channels::kLa, Channels::kRgb, Channels::kRgba};
 
-bool isInteger(ValueType type) {
-  return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;
-}
-
 void requirePositive(const std::filesystem::path& path, const Image<float>& image, const TexelShape& shape) {
   for (std::size_t i = 0; i < image.data.size(); ++i)
     if (image.data[i] < 0.0f)

@@ -35,6 +35,9 @@ constexpr int countOf(Channels channels) {
 constexpr std::size_t bytesOf(ValueType type) {
   return type == ValueType::kUnorm8 ? 1 : type == ValueType::kFloat ? 4 : 2;
 }
+constexpr bool isInteger(ValueType type) {
+  return type == ValueType::kUnorm8 || type == ValueType::kUnorm16;
+}
 
 struct TexelFormat {
   Channels channels = Channels::kL;
