@@ -81,7 +81,7 @@ void describe(Scene& s, ParamVisitor& v) {
           s.metar);
   v.value({"visibility_m", "m",
            "how far black things stand out at the ground, by a contrast of 2 % (Koschmieder); absent: from "
-           "the report, else 40 km",
+           "the report, 1.31 times its number as that is by 5 %, else 40 km",
            10, 300000},
           s.visibilityM);
   v.choice({"technique", "",

@@ -19,8 +19,11 @@ namespace welkin::weather {
 namespace {
 
 // Meteorological optical range: transmission 5 % over that length (WMO-No. 8, Guide to Instruments, 9.1), so
-// extinction is -ln(0.05) = 2.996 divided by it. (Koschmieder's 3.912 belongs to 2 % contrast.)
+// extinction is -ln(0.05) = 2.996 divided by it.
 constexpr double kMorOpticalDepth = 2.996;
+
+// Weather::visibilityM is the range of a contrast of 2 %, by Koschmieder's 3.912: of the same air it is longer.
+constexpr double kVisibilityOfMor = 3.912 / kMorOpticalDepth;
 
 constexpr double kFogVisibilityM = 1000.0;  // fog is what makes visibility less than this (code table 4678)
 
@@ -410,8 +413,8 @@ void Builder::setVisibility() {
     note("The visibility is missing; " + metres(weather_.visibilityM) + " is assumed.");
     return;
   }
-  const double reportedM = *metar_.visibilityM;
-  if (fogLayer_ && reportedM < kVisibilityOutsideFogM) {
+  const double reportedM = *metar_.visibilityM, ofAirM = kVisibilityOfMor * reportedM;
+  if (fogLayer_ && ofAirM < kVisibilityOutsideFogM) {
     weather_.visibilityM = kVisibilityOutsideFogM;
     note("What lies on the ground makes the visibility of " + metres(reportedM) +
          "; the air above it is given " + metres(kVisibilityOutsideFogM) + ".");
@@ -420,7 +423,7 @@ void Builder::setVisibility() {
   // Ten statute miles is as far as most American stations report (FMH-1, table 6-1).
   const bool atLeast = metar_.visibilityBound == MetarBound::kAtLeast ||
                        std::abs(reportedM - 10.0 * kMetresPerStatuteMile) < 1.0;
-  weather_.visibilityM = std::max(atLeast ? std::max(clearM, reportedM) : reportedM, 25.0);
+  weather_.visibilityM = std::max(atLeast ? std::max(clearM, ofAirM) : ofAirM, 25.0);
 }
 
 void Builder::setWinds() {

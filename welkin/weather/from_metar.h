@@ -13,8 +13,8 @@
 // - obscured: VV, and thick fog, make a layer of fog from the ground that hides the whole sky
 // - thin fog: fog through which the observer reports clouds or a clear sky is a shallow layer: 1.6 oktas,
 //   near the horizon
-// - haze: by Koschmieder's law from the visibility; "10 km or more" takes a value from
-//   the humidity
+// - haze: from the visibility, by a contrast of 5 % in reports and of 2 % in Weather, where it is 1.31 times
+//   as long; "10 km or more" takes a value from the humidity
 // - wind: wind.h
 #pragma once
 
