@@ -22,7 +22,8 @@ namespace {
 // extinction is -ln(0.05) = 2.996 divided by it.
 constexpr double kMorOpticalDepth = 2.996;
 
-// Weather::visibilityM is the range of a contrast of 2 %, by Koschmieder's 3.912: of the same air it is longer.
+// Weather::visibilityM is the range of a contrast of 2 %, by Koschmieder's 3.912: of the same air it is
+// longer.
 constexpr double kVisibilityOfMor = 3.912 / kMorOpticalDepth;
 
 constexpr double kFogVisibilityM = 1000.0;  // fog is what makes visibility less than this (code table 4678)
@@ -414,7 +415,11 @@ void Builder::setVisibility() {
     return;
   }
   const double reportedM = *metar_.visibilityM, ofAirM = kVisibilityOfMor * reportedM;
-  if (fogLayer_ && ofAirM < kVisibilityOutsideFogM) {
+  // Shallow fog leaves 1000 m at eye height, banks and patches cover a part alone: more than that is the
+  // air's (code table 4678).
+  const bool fogMakesIt =
+      fogLayer_ && (present_.fog == FogKind::kFog || metar_.skyObscured || reportedM < kFogVisibilityM);
+  if (fogMakesIt && ofAirM < kVisibilityOutsideFogM) {
     weather_.visibilityM = kVisibilityOutsideFogM;
     note("What lies on the ground makes the visibility of " + metres(reportedM) +
          "; the air above it is given " + metres(kVisibilityOutsideFogM) + ".");

@@ -252,6 +252,14 @@ TEST(FromMetar, VisibilityAndHaze) {
   EXPECT_EQ(weatherOf("KMRY 211753Z 24005KT 10SM CLR 25/05 A2992").visibilityM, 40000.0)
       << "ten miles or more";
   EXPECT_NEAR(weatherOf("CYXL 211753Z 24005KT 15SM CLR 25/05 A2992").visibilityM, 1.3057 * 24140.16, 1.0);
+  // Fog that is shallow or not everywhere leaves the air its visibility.
+  const auto visibilityOf = [](const std::string& what) {
+    return weatherOf("LIBV 222355Z 19001KT " + what + " NSC 16/16 Q1022").visibilityM;
+  };
+  for (const char* fog : {"MIFG", "BR MIFG", "BCFG", "PRFG"})
+    EXPECT_EQ(visibilityOf("3000 " + std::string(fog)), visibilityOf("3000 BR")) << fog;
+  EXPECT_EQ(visibilityOf("0400 FG"), 10000.0);
+  EXPECT_EQ(visibilityOf("0400 BCFG"), 10000.0) << "no air alone has so little";
   EXPECT_NEAR(relativeHumidity(20.0, 20.0), 1.0, 1e-12);
   EXPECT_NEAR(relativeHumidity(20.0, 9.3), 0.50, 0.01);  // psychrometric tables
 }
