@@ -348,7 +348,7 @@ void Builder::limitDepths() {
     for (std::size_t k = i + 1; k < layers.size(); ++k) {
       const double gapM = layers[k].baseM - l.baseM;
       if (gapM <= 0.0) continue;
-      const double limitedM = std::clamp(0.85 * gapM, 80.0, l.topM - l.baseM);
+      const double limitedM = std::min(std::max(0.85 * gapM, std::min(80.0, gapM)), l.topM - l.baseM);
       // Thinner, but no more transparent than it was: a reported amount is one that hides.
       if (limitedM < l.topM - l.baseM) {
         l.extinctionPerM *= std::min((l.topM - l.baseM) / limitedM, 2.0);

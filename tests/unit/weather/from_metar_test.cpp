@@ -179,6 +179,15 @@ TEST(FromMetar, FogUnderAReportedSkyIsShallow) {
   EXPECT_TRUE(weatherOf("LIBV 222355Z 19001KT 9999 VCFG NSC 16/16 Q1022").layers.empty());
 }
 
+TEST(FromMetar, SheetsEndBelowTheNext) {
+  for (const char* sky : {"BKN005 OVC006", "BKN005 OVC007", "BKN005 OVC012", "BKN005 BKN006 OVC007"}) {
+    const Weather w = weatherOf("LSZH 211200Z 24005KT 9999 " + std::string(sky) + " 12/11 Q1015");
+    for (std::size_t i = 0; i + 1 < w.layers.size(); ++i)
+      EXPECT_LE(w.layers[i].topM, w.layers[i + 1].baseM) << sky;
+    for (const Layer& l : w.layers) EXPECT_NO_THROW(validate(l)) << sky;
+  }
+}
+
 TEST(FromMetar, MissingBasesAreClimatologicalAndSaidToBe) {
   const Weather overcast = weatherOf("LSZH 211200Z 24005KT 9999 OVC/// 12/08 Q1015");
   ASSERT_EQ(overcast.layers.size(), 1u);
