@@ -199,6 +199,7 @@ std::optional<MetarWind> readWind(std::string_view text) {
     }
   }
   if (!c.done()) return {};
+  if (wind.directionDeg == 0 && wind.speedMps.value_or(0.0) > 0.0) return {};  // the north is 360
   if (std::max(wind.speedMps.value_or(0.0), wind.gustMps.value_or(0.0)) > kMaxWindMps) return {};
   if (wind.gustMps && wind.speedMps && *wind.gustMps < *wind.speedMps) return {};
   return wind;
@@ -395,6 +396,7 @@ std::optional<VerticalVisibilityGroup> readVerticalVisibility(std::string_view t
   Cursor c(text);
   std::optional<int> hundredsOfFeet;
   if (!c.eat("VV") || !digitsOrSolidi(c, 3, hundredsOfFeet) || !c.done()) return {};
+  if (hundredsOfFeet.value_or(0) > kMaxHundredsOfFeet) return {};
   VerticalVisibilityGroup v;
   if (hundredsOfFeet) v.feet = *hundredsOfFeet * 100;
   return v;

@@ -82,6 +82,7 @@ bool isStation(std::string_view text) {
 // CAVOK is: no such cloud below 5,000 ft, no CB or TCU at any height (WMO-No. 306, FM 15, 15.10). An amount
 // that an instrument cannot tell says nothing against it.
 constexpr int kCavokFeet = 5000;
+constexpr double kCavokVisibilityM = 10000.0;
 bool deniesCavok(const MetarLayer& l) {
   return l.type != MetarCloudType::kNone ||
          (l.cover != MetarCover::kUnknown && l.baseFt && *l.baseFt < kCavokFeet);
@@ -149,6 +150,7 @@ class Reader {
   bool windSeen_ = false;
   bool variationSeen_ = false;
   bool visibilitySeen_ = false;
+  bool lessSomewhere_ = false;       // a least visibility of less than 10 km stands beside the prevailing one
   bool visibilityJustSeen_ = false;  // the group before this one was a visibility
   bool temperatureSeen_ = false;
   int pressuresSeen_ = 0;
@@ -420,7 +422,14 @@ void Reader::setVisibility(const Group& g, const VisibilityGroup& v) {
   // The least visibility and where it is stand behind the prevailing one, and do not exceed it.
   const bool minimum = (follows || v.directional) && !metar().cavok && metar().visibilityM &&
                        *v.metres <= *metar().visibilityM;
-  if (v.directional || minimum) return;
+  if (v.directional || minimum) {
+    const bool less = *v.metres < kCavokVisibilityM;
+    if (less && metar().cavok)
+      failCavok(g);
+    else
+      lessSomewhere_ = lessSomewhere_ || less;
+    return;
+  }
   if (metar().cavok && g.text == "CAVOK") return;
   failTwice(g, "visibility");
 }
@@ -428,7 +437,7 @@ void Reader::setVisibility(const Group& g, const VisibilityGroup& v) {
 void Reader::setCavok(const Group& g) {
   const Metar& m = metar();
   const char* denied = nullptr;
-  if (visibilitySeen_ && m.visibilityBound != MetarBound::kAtLeast)
+  if (lessSomewhere_ || (visibilitySeen_ && m.visibilityBound != MetarBound::kAtLeast))
     denied = "visibility";
   else if (std::any_of(m.weather.begin(), m.weather.end(), [](const auto& w) { return w != "//"; }))
     denied = "weather";
@@ -441,7 +450,7 @@ void Reader::setCavok(const Group& g) {
     return;
   }
   metar().cavok = true;
-  setVisibility(g, {.metres = 10000.0, .bound = MetarBound::kAtLeast});
+  setVisibility(g, {.metres = kCavokVisibilityM, .bound = MetarBound::kAtLeast});
 }
 
 void Reader::addWeather(const Group& g) {

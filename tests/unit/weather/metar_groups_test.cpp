@@ -36,13 +36,13 @@ TEST(MetarGroups, Wind) {
     double mpsPerUnit;
   };
   const Case cases[] = {
-      {"24015G25KT", 240, 15, 25, kMpsPerKnot},     {"00000KT", 0, 0, -1, kMpsPerKnot},
-      {"VRB02KT", -1, 2, -1, kMpsPerKnot},          {"25016G21MPS", 250, 16, 21, 1.0},
-      {"36010KMH", 360, 10, -1, kMpsPerKmh},        {"///05KT", -1, 5, -1, kMpsPerKnot},
-      {"/////KT", -1, -1, -1, kMpsPerKnot},         {"240//KT", 240, -1, -1, kMpsPerKnot},
-      {"270120G140KT", 270, 120, 140, kMpsPerKnot}, {"240P49MPS", 240, 49, -1, 1.0},
-      {"240P99GP99KT", 240, 99, 99, kMpsPerKnot},   {"VRB03G15KT", -1, 3, 15, kMpsPerKnot},
-      {"235//G15KT", 235, -1, 15, kMpsPerKnot},
+      {"24015G25KT", 240, 15, 25, kMpsPerKnot}, {"000//KT", 0, -1, -1, kMpsPerKnot},
+      {"00000KT", 0, 0, -1, kMpsPerKnot},       {"VRB02KT", -1, 2, -1, kMpsPerKnot},
+      {"25016G21MPS", 250, 16, 21, 1.0},        {"36010KMH", 360, 10, -1, kMpsPerKmh},
+      {"///05KT", -1, 5, -1, kMpsPerKnot},      {"/////KT", -1, -1, -1, kMpsPerKnot},
+      {"240//KT", 240, -1, -1, kMpsPerKnot},    {"270120G140KT", 270, 120, 140, kMpsPerKnot},
+      {"240P49MPS", 240, 49, -1, 1.0},          {"240P99GP99KT", 240, 99, 99, kMpsPerKnot},
+      {"VRB03G15KT", -1, 3, 15, kMpsPerKnot},   {"235//G15KT", 235, -1, 15, kMpsPerKnot},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.text);
@@ -54,10 +54,10 @@ TEST(MetarGroups, Wind) {
   }
   EXPECT_TRUE(readWind("VRB02KT")->variable);
   EXPECT_TRUE(readWind("240P49MPS")->speedAtLeast);
-  expectAll(
-      false, readWind,
-      {"36020", "24015", "2415KT", "240155KTS", "37015KT", "24015G10KT", "24015GKT", "240999KT", "VRBKT",
-       "24O15KT", "24015G25", "KT", "24015KTB", "00000KTBCAVOK", "RS01011KT", "240P2KT", "24015G2KT"});
+  expectAll(false, readWind,
+            {"36020", "24015", "2415KT", "240155KTS", "37015KT", "24015G10KT", "24015GKT", "240999KT",
+             "VRBKT", "24O15KT", "24015G25", "KT", "24015KTB", "00000KTBCAVOK", "00005KT", "00010G20KT",
+             "RS01011KT", "240P2KT", "24015G2KT"});
 }
 
 TEST(MetarGroups, Variation) {
@@ -199,7 +199,7 @@ TEST(MetarGroups, Clouds) {
   EXPECT_EQ(readVerticalVisibility("VV002")->feet, 200);
   ASSERT_TRUE(readVerticalVisibility("VV///"));
   EXPECT_FALSE(readVerticalVisibility("VV///")->feet);
-  expectAll(false, readVerticalVisibility, {"VV", "VV02", "VV0020", "VV//", "V002"});
+  expectAll(false, readVerticalVisibility, {"VV", "VV02", "VV0020", "VV//", "V002", "VV601", "VV999"});
   EXPECT_EQ(readClear("SKC"), MetarClear::kSkc);
   EXPECT_EQ(readClear("CLR"), MetarClear::kClr);
   EXPECT_EQ(readClear("NSC"), MetarClear::kNsc);

@@ -89,6 +89,9 @@ TEST(MetarReport, VisibilitiesBesideThePrevailingOne) {
   EXPECT_EQ(errorColumns("SKPE 231100Z VRB02KT 8000 BR 3000"), (Columns{30}));
   EXPECT_EQ(errorColumns("SKPE 231100Z VRB02KT 3000 CAVOK"), (Columns{27}));
   EXPECT_EQ(errorColumns("SKPE 231100Z VRB02KT CAVOK 3000"), (Columns{28}));
+  EXPECT_EQ(errorColumns("SKPE 231100Z VRB02KT CAVOK 3000SW"), (Columns{28}));
+  EXPECT_EQ(errorColumns("SKPE 231100Z VRB02KT 9999 3000SW CAVOK"), (Columns{34}));
+  EXPECT_TRUE(parseMetar("SKPE 231100Z VRB02KT 9999 3000SW").ok());
 }
 
 TEST(MetarReport, ContradictionsAreErrors) {
