@@ -62,6 +62,8 @@ bool eatAny(Cursor& c, const std::array<std::string_view, n>& words) {
   return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return c.eat(w); });
 }
 
+constexpr std::array<std::string_view, 8> kCompass = {"NE", "NW", "SE", "SW", "N", "E", "S", "W"};
+
 // Code table 4678 of WMO-No. 306, two letters each.
 constexpr std::string_view kDescriptors = "MIBCPRDRBLSHTSFZ";
 constexpr std::string_view kPrecipitation = "DZRASNSGICPLGRGSUP";
@@ -238,7 +240,6 @@ std::optional<VisibilityGroup> readVisibilityMetres(std::string_view text) {
   }
   if (c.done() || c.eat("NDV")) return c.done() ? std::optional(v) : std::nullopt;
   if (v.bound != MetarBound::kLessThan && c.eat('M')) return c.done() ? std::optional(v) : std::nullopt;
-  static constexpr std::array<std::string_view, 8> kCompass = {"NE", "NW", "SE", "SW", "N", "E", "S", "W"};
   v.directional = eatAny(c, kCompass);
   return v.directional && c.done() ? std::optional(v) : std::nullopt;
 }
@@ -331,7 +332,6 @@ bool isNationalSupplement(std::string_view text) {
            skipDigitsOrSolidi(c, 3) && c.eat('.') && skipDigitsOrSolidi(c, 1) && c.done();
   }
   if (c.eat("DL-")) {  // Australia: distant lightning and where
-    static constexpr std::array<std::string_view, 8> kCompass = {"NE", "NW", "SE", "SW", "N", "E", "S", "W"};
     return eatAny(c, kCompass) && c.done();
   }
   if (c.eat("RH")) return c.digits(2, 3) && c.done();  // Pakistan: relative humidity

@@ -18,7 +18,8 @@ struct Phenomenon {
 
 // Rates inside the bounds of the AMS Glossary of Meteorology, which WMO-No. 8 (annex 14.A) shares in
 // substance: rain light below 2.5 mm/h, moderate to 7.6, heavy above; drizzle 0.1 and 0.5 mm/h; snow, as
-// water, 1 and 5 mm/h. What comes first here wins where several fall together and hail or ice are among them.
+// water, 1 and 5 mm/h. The first two, hail, win wherever they stand in a group; else what stands first in it
+// does.
 constexpr std::array<Phenomenon, 9> kPhenomena = {{
     {"GR", PrecipitationKind::kHail, {2.0, 8.0, 25.0}},
     {"GS", PrecipitationKind::kHail, {1.0, 4.0, 10.0}},
