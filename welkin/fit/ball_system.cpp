@@ -14,10 +14,6 @@ constexpr int kSlabSlices = 4;
 constexpr double kFewVoxels = 3e5;  // that balls cover together: threads would take longer to start
 constexpr std::size_t kGrain = 4;
 
-double square(const glm::dvec3& v) {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
-
 void forSlabs(const BallLists& lists, const std::function<void(int)>& body) {
   const auto count = static_cast<std::size_t>(lists.slabs());
   parallelFor(count, lists.many() ? 1 : count, [&](std::size_t begin, std::size_t end) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRounds = 15;
 constexpr double kAtRest = 1e-3;  // centres that move less than this, of a voxel, are at rest
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kGrain = 4096, kEpochGrain = 256;
 constexpr int kMostEpochs = 40;
 constexpr double kSlowest = 0.02;
 
@@ -22,10 +22,6 @@ struct Point {
   glm::dvec3 at;
   double weight, density;
 };
-
-double square(const glm::dvec3& v) {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
 
 // Three times 21 bits, interleaved.
 std::uint64_t spreadBits(std::uint64_t v) {
@@ -170,7 +166,7 @@ std::vector<Cluster> clustersOf(const std::vector<Point>& points, const std::vec
 }  // namespace
 
 std::vector<Cluster> clusters(const DensityGrid& data, std::size_t count, std::uint64_t seed,
-                              const std::function<void()>& check) {
+                              const FitControl& control) {
   assert(count >= 1 && static_cast<std::int64_t>(count) <= data.cloudVoxels);
   const std::vector<Point> points = pointsOf(data, true);
   std::vector<glm::dvec3> centres = spreadCentres(points, count, seed);
@@ -180,12 +176,12 @@ std::vector<Cluster> clusters(const DensityGrid& data, std::size_t count, std::u
     owner[i] = static_cast<std::uint32_t>(i * count / points.size());
   const double rest = kAtRest * std::min({data.grid.step.x, data.grid.step.y, data.grid.step.z});
   for (int round = 0;; ++round) {
-    check();
+    control.check();
     const NearestCentre nearest(centres);
     parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) owner[i] = nearest(points[i].at, owner[i]);
     });
-    if (round == kRounds) break;
+    if (round == kRounds || control.late()) break;
     std::vector<glm::dvec3> sums(count, glm::dvec3(0.0));
     std::vector<double> weights(count);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -205,7 +201,7 @@ std::vector<Cluster> clusters(const DensityGrid& data, std::size_t count, std::u
 }
 
 std::vector<Cluster> manClusters(const DensityGrid& data, std::size_t count, std::uint64_t seed,
-                                 const std::function<void()>& check) {
+                                 const FitControl& control) {
   assert(count >= 1 && static_cast<std::int64_t>(count) <= data.cloudVoxels);
   std::vector<Point> points = pointsOf(data, false);
   for (Point& p : points) p.weight = 1.0;
@@ -230,10 +226,14 @@ std::vector<Cluster> manClusters(const DensityGrid& data, std::size_t count, std
     return nearest;
   };
   std::vector<std::uint64_t> drawn(count, 0);
-  for (int epoch = 0; epoch < kMostEpochs; ++epoch) {
+  bool late = false;
+  for (int epoch = 0; epoch < kMostEpochs && !late; ++epoch) {
     shuffle();
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      if (i % kGrain == 0) check();
+    for (std::size_t i = 0; i < order.size() && !late; ++i) {
+      if (i % kEpochGrain == 0) {
+        control.check();
+        late = control.late();
+      }
       const glm::dvec3& p = points[order[i]].at;
       const std::size_t k = nearestTo(p);
       centres[k] += (p - centres[k]) / std::sqrt(static_cast<double>(++drawn[k]));
@@ -244,8 +244,10 @@ std::vector<Cluster> manClusters(const DensityGrid& data, std::size_t count, std
     if (eta / static_cast<double>(count) < kSlowest) break;
   }
   std::vector<std::uint32_t> owner(points.size());
+  const NearestCentre nearest(centres);
   parallelFor(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) owner[i] = static_cast<std::uint32_t>(nearestTo(points[i].at));
+    std::uint32_t guess = 0;  // voxels that follow one another lie near one another
+    for (std::size_t i = begin; i < end; ++i) owner[i] = guess = nearest(points[i].at, guess);
   });
   return clustersOf(points, owner, centres);
 }

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "welkin/fit/density_grid.h"
+#include "welkin/fit/fit_control.h"
 
 namespace welkin::fit {
 
@@ -20,15 +20,16 @@ struct Cluster {
 // Quantization in PCM". It begins at equal steps of the density along a space-filling curve (G. M. Morton
 // 1966), shifted by the seed; the nearest centre is found exactly, through bins, so that a round takes about
 // as long for many clusters as for few. `count` at most data.cloudVoxels. The same in any number of threads.
+// Where control.late the centres are those so far.
 std::vector<Cluster> clusters(const DensityGrid& data, std::size_t count, std::uint64_t seed,
-                              const std::function<void()>& check);
+                              const FitControl& control);
 
 // The rule of P. Man 2006 after C. Darken and J. Moody 1990, "Fast adaptive k-means clustering": centres
 // begin at random voxels; each voxel in turn draws the centre nearest to it nearer by eta = 1 / sqrt(n), n
 // the voxels that centre has drawn so far; all voxels count the same. Voxels come in another random order in
 // every epoch (in the order of the file, centres would follow the last slice), and epochs end when eta is
-// below 0.02 on average, or after 40.
+// below 0.02 on average, or after 40, or where control.late.
 std::vector<Cluster> manClusters(const DensityGrid& data, std::size_t count, std::uint64_t seed,
-                                 const std::function<void()>& check);
+                                 const FitControl& control);
 
 }  // namespace welkin::fit

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "welkin/core/image.h"
@@ -11,6 +12,10 @@
 #include "welkin/fit/ball_kernels.h"
 
 namespace welkin::fit {
+
+inline double square(const glm::dvec3& v) {
+  return v.x * v.x + v.y * v.y + v.z * v.z;
+}
 
 struct DensityGrid {
   BallGrid grid;                 // metres

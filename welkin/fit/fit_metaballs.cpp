@@ -117,7 +117,7 @@ class LevelFit {
     const bool man = params_.method == FitMethod::kMan;
     const std::uint64_t seed = hashOf(static_cast<std::uint64_t>(params_.seed), start);
     const std::vector<Cluster> found =
-        man ? manClusters(data, count_, seed, control_.check) : clusters(data, count_, seed, control_.check);
+        man ? manClusters(data, count_, seed, control_) : clusters(data, count_, seed, control_);
     const double least =
         params_.leastRadiusVoxels * std::max({data.grid.step.x, data.grid.step.y, data.grid.step.z});
     const auto ballsWith = [&](double spread) {
@@ -125,16 +125,21 @@ class LevelFit {
       balls.reserve(found.size());
       for (const Cluster& c : found)
         balls.push_back({c.centre, std::max(spread * c.spread, least), man ? c.density : 1.0});
-      if (man)
+      if (man) {
         scaleWeights(data, balls);
-      else
-        solveWeights(data, balls, params_.isSigned);
+      } else if (!solveWeights(data, balls, params_.isSigned, control_.late)) {
+        // Without the time for more, one factor for the densities of the clusters.
+        for (std::size_t i = 0; i < balls.size(); ++i)
+          balls[i].weight = params_.isSigned ? found[i].density : std::max(found[i].density, 0.0);
+        scaleWeights(data, balls);
+      }
       return balls;
     };
     if (params_.method == FitMethod::kWeights && !params_.spread) {
       double best = 0.0;
       for (const double spread : kSpreads) {
         control_.check();
+        if (!begun.empty() && control_.late()) break;
         std::vector<GridBall> balls = ballsWith(spread);
         std::vector<float> r;
         const double squares = residual(data, balls, BallLists(data.grid, balls), r);

@@ -2,11 +2,11 @@
 // Centres, radii and weights of all balls made better together. Private to fit/.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "welkin/fit/ball_system.h"
+#include "welkin/fit/fit_control.h"
 
 namespace welkin::fit {
 
@@ -17,11 +17,6 @@ struct RefineParams {
   int innerSteps = 25;           // of conjugate gradients, for one step
   double innerTolerance = 0.05;  // of their preconditioned residual
   double tolerance = 1e-5;       // ends when a step takes off less than this share of |r|^2
-};
-
-struct FitControl {
-  std::function<void()> check;  // called often, from the calling thread; may throw to stop
-  std::function<bool()> late;   // true: finish now with what there is
 };
 
 // Levenberg and Marquardt's method (D. Marquardt 1963, "An Algorithm for Least-Squares Estimation of

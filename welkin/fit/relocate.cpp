@@ -22,10 +22,6 @@ constexpr double kHopeless = 3.0;  // of what is enough, after so few steps
 using Block = Eigen::Matrix<double, 5, 5>;
 using Five = Eigen::Matrix<double, 5, 1>;
 
-double square(const glm::dvec3& v) {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
-
 std::vector<double> worthOf(const DensityGrid& data, const std::vector<GridBall>& balls) {
   const auto neighbours = neighboursOf(balls);
   const std::vector<BallBlock> blocks = Jacobian(data, balls).blocks();

@@ -17,15 +17,15 @@ constexpr int kMostSweeps = 300;
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-// Products of the balls' functions with one another and with the map.
-void normalEquations(const DensityGrid& data, std::span<const GridBall> balls, Matrix& products,
-                     Eigen::VectorXd& right) {
+// Products of the balls' functions with one another and with the map; false, and not all, where it got late.
+bool normalEquations(const DensityGrid& data, std::span<const GridBall> balls, Matrix& products,
+                     Eigen::VectorXd& right, const std::function<bool()>& late) {
   const auto neighbours = neighboursOf(balls);
   std::vector<std::vector<Eigen::Triplet<double>>> rows(balls.size());
   const auto n = static_cast<Eigen::Index>(balls.size());
   right.resize(n);
   parallelFor(balls.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t i = begin; i < end && !late(); ++i) {
       const auto at = static_cast<int>(i);
       const BallGain own = gainOfBall(data.grid, balls[i], data.density.data());
       right[at] = own.fr;
@@ -42,16 +42,19 @@ void normalEquations(const DensityGrid& data, std::span<const GridBall> balls, M
       }
     }
   });
+  if (late()) return false;
   std::vector<Eigen::Triplet<double>> all;
   for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
   products.resize(n, n);
   products.setFromTriplets(all.begin(), all.end());
+  return true;
 }
 
-void descend(const Matrix& products, const Eigen::VectorXd& right, Eigen::VectorXd& w) {
+void descend(const Matrix& products, const Eigen::VectorXd& right, const std::function<bool()>& late,
+             Eigen::VectorXd& w) {
   Eigen::VectorXd slope = products * w - right;
   const Eigen::VectorXd diagonal = products.diagonal();
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMostSweeps && !late(); ++sweep) {
     double change = 0.0;
     for (Eigen::Index i = 0; i < w.size(); ++i) {
       const double next = std::max(0.0, w[i] - slope[i] / diagonal[i]);
@@ -67,10 +70,11 @@ void descend(const Matrix& products, const Eigen::VectorXd& right, Eigen::Vector
 
 }  // namespace
 
-void solveWeights(const DensityGrid& data, std::span<GridBall> balls, bool isSigned) {
+bool solveWeights(const DensityGrid& data, std::span<GridBall> balls, bool isSigned,
+                  const std::function<bool()>& late) {
   Matrix products;
   Eigen::VectorXd right;
-  normalEquations(data, balls, products, right);
+  if (!normalEquations(data, balls, products, right, late)) return false;
   Eigen::VectorXd w(right.size());
   for (std::size_t i = 0; i < balls.size(); ++i) w[static_cast<Eigen::Index>(i)] = balls[i].weight;
   if (isSigned) {
@@ -80,9 +84,10 @@ void solveWeights(const DensityGrid& data, std::span<GridBall> balls, bool isSig
     w = solver.compute(products).solveWithGuess(right, w);
   } else {
     w = w.cwiseMax(0.0);
-    descend(products, right, w);
+    descend(products, right, late, w);
   }
   for (std::size_t i = 0; i < balls.size(); ++i) balls[i].weight = w[static_cast<Eigen::Index>(i)];
+  return true;
 }
 
 void scaleWeights(const DensityGrid& data, std::span<GridBall> balls) {

@@ -19,9 +19,7 @@ DensityGrid randomMap(int nx, int ny, int nz) {
   return densityGrid(map, {nx, ny, nz, {10, 10, 10}, {-50, 0, 20}});
 }
 
-double square(const glm::dvec3& v) {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
+const FitControl kFree{[] {}, [] { return false; }};
 
 // Sum over the voxels of weight times squared distance to the nearest centre, by looking at all of them.
 double costOf(const DensityGrid& data, const std::vector<Cluster>& found, bool weighted) {
@@ -41,7 +39,7 @@ double costOf(const DensityGrid& data, const std::vector<Cluster>& found, bool w
 
 TEST(Cluster, CentresAreTheMeansOfWhatIsNearestToThem) {
   const DensityGrid data = randomMap(20, 17, 9);
-  const std::vector<Cluster> found = clusters(data, 40, 1, [] {});
+  const std::vector<Cluster> found = clusters(data, 40, 1, kFree);
   ASSERT_EQ(found.size(), 40U);
   std::vector<glm::dvec3> sums(40, glm::dvec3(0.0));
   std::vector<double> weights(40), squares(40), densities(40), counts(40);
@@ -68,25 +66,36 @@ TEST(Cluster, CentresAreTheMeansOfWhatIsNearestToThem) {
 
 TEST(Cluster, IsAsGoodAsALatticeAndBetterThanTheOnlineRule) {
   const DensityGrid data = randomMap(24, 24, 24);
-  const double lloyd = costOf(data, clusters(data, 64, 1, [] {}), true);
+  const double lloyd = costOf(data, clusters(data, 64, 1, kFree), true);
   std::vector<Cluster> lattice;
   for (int i = 0; i < 64; ++i)
     lattice.push_back({data.grid.first + 10.0 * (glm::dvec3(i % 4, i / 4 % 4, i / 16) * 6.0 + 2.5), 0, 0});
   // On white noise a lattice is hard to beat.
   EXPECT_LT(lloyd, 1.05 * costOf(data, lattice, true));
-  EXPECT_LT(lloyd, costOf(data, manClusters(data, 64, 1, [] {}), true) * 1.05);
+  EXPECT_LT(lloyd, costOf(data, manClusters(data, 64, 1, kFree), true) * 1.05);
   // The online rule minimises the unweighted cost, and comes near what a lattice reaches.
-  EXPECT_LT(costOf(data, manClusters(data, 64, 1, [] {}), false), 1.1 * costOf(data, lattice, false));
+  EXPECT_LT(costOf(data, manClusters(data, 64, 1, kFree), false), 1.1 * costOf(data, lattice, false));
 }
 
 TEST(Cluster, AsManyAsVoxelsAreTheVoxels) {
   Volume<float> map(5, 4, 3, 1);
   for (const std::size_t i : {0U, 7U, 23U, 58U, 59U}) map.data[i] = static_cast<float>(i + 1);
   const DensityGrid data = densityGrid(map, {5, 4, 3});
-  for (const auto& found : {clusters(data, 5, 3, [] {}), manClusters(data, 5, 3, [] {})}) {
+  for (const auto& found : {clusters(data, 5, 3, kFree), manClusters(data, 5, 3, kFree)}) {
     ASSERT_EQ(found.size(), 5U);
     EXPECT_NEAR(costOf(data, found, true), 0.0, 1e-9);
     for (const Cluster& c : found) EXPECT_NEAR(c.spread, 0.0, 1e-9);
+  }
+}
+
+TEST(Cluster, EndsWhenItIsLate) {
+  const DensityGrid data = randomMap(30, 30, 30);
+  for (const auto find : {clusters, manClusters}) {
+    int checks = 0;
+    const std::vector<Cluster> found = find(data, 50, 1, {[&] { ++checks; }, [&] { return checks >= 3; }});
+    EXPECT_EQ(checks, 3);
+    ASSERT_EQ(found.size(), 50U);
+    for (const Cluster& c : found) EXPECT_GT(c.spread, 0.0);
   }
 }
 
@@ -94,7 +103,7 @@ TEST(Cluster, ThreadsAndSeeds) {
   const DensityGrid data = randomMap(30, 30, 30);
   const auto centresOf = [&](std::uint64_t seed) {
     std::vector<glm::dvec3> centres;
-    for (const Cluster& c : clusters(data, 50, seed, [] {})) centres.push_back(c.centre);
+    for (const Cluster& c : clusters(data, 50, seed, kFree)) centres.push_back(c.centre);
     return centres;
   };
   setThreadCount(1);

@@ -171,6 +171,22 @@ TEST(FitMetaballs, GoesOnFromWhatThereIs) {
   EXPECT_LT(levels[0].relativeL2, before);
 }
 
+// Without time every method ends after its first round, with balls that are somewhere near.
+TEST(FitMetaballs, TimeLimitHoldsForWhatFitsBeginWith) {
+  const Map map = mansCloud();
+  for (const FitMethod method : {FitMethod::kMan, FitMethod::kWeights, FitMethod::kRefined}) {
+    std::vector<FitLevel> levels(1);
+    levels[0].count = 100;
+    int calls = 0;
+    fitMetaballs(map.density, map.frame, {.method = method, .timeLimitS = 0.0}, levels,
+                 [&](const FitProgress&) { ++calls; });
+    EXPECT_LE(calls, 4);
+    EXPECT_EQ(levels[0].balls.size(), 100U);
+    EXPECT_TRUE(levels[0].complete);
+    EXPECT_LT(levels[0].relativeL2, 0.8);
+  }
+}
+
 TEST(FitMetaballs, StopsWithTheBestSoFar) {
   const Map map = smallCloud();
   std::vector<FitLevel> levels(2);

@@ -111,7 +111,7 @@ TEST(Refine, WeightsAreTheLeastSquares) {
   const DensityGrid data = someMap();
   for (const bool isSigned : {false, true}) {
     std::vector<GridBall> balls = someBalls(data, 25);
-    solveWeights(data, balls, isSigned);
+    EXPECT_TRUE(solveWeights(data, balls, isSigned, kFree.late));
     std::vector<float> r;
     residual(data, balls, BallLists(data.grid, balls), r);
     bool negative = false;
