@@ -29,6 +29,7 @@ Span Axis::at(double p, double shiftCells) const {
   const double back = sum - p;
   const double sumError = (p - (sum - back)) + (offset_ - back);
   const double product = sum * frequency_;
+  if (!std::isfinite(product)) return at(0.0, shiftCells);
   const double error = std::fma(sum, frequency_, -product) + sumError * frequency_;
   const double cell = std::floor(product);
   double inside = ((product - cell) + error) + (cells_ + shiftCells);
@@ -41,14 +42,15 @@ Span Axis::at(double p, double shiftCells) const {
       step += 1.0;
       inside = 0.0;
     }
-    low = moved(low, static_cast<int>(step));  // far away a double holds no single cells
+    // Far away a double holds no single cells, and a step has many.
+    low = moved(low, static_cast<std::int64_t>(std::fmod(step, period)));
   }
   return {low, moved(low, 1), inside};
 }
 
-std::uint32_t Axis::moved(std::uint32_t index, int steps) const {
+std::uint32_t Axis::moved(std::uint32_t index, std::int64_t steps) const {
   if (period_ == 0) return index + static_cast<std::uint32_t>(steps);
-  std::int64_t i = static_cast<std::int64_t>(index) + steps;
+  std::int64_t i = index + steps;
   if (i < 0 || i >= period_) i %= period_;  // divisions are slow
   return static_cast<std::uint32_t>(i < 0 ? i + period_ : i);
 }

@@ -49,7 +49,8 @@ class Axis {
   Axis(std::uint32_t key, double frequency, double offset, double repeat, double cells = 0.0);
 
   // Exact to the last bits of a double however far the position is: neither the sum nor the product loses
-  // the place within the cell. p must be finite; the shift is added in cells.
+  // the place within the cell. p must be finite; the shift is added in cells. Where the product overflows the
+  // place is that of 0.
   Span at(double p, double shiftCells = 0.0) const;
 
   std::uint32_t hash(std::uint32_t index) const { return axisHash(key_, index); }
@@ -57,7 +58,7 @@ class Axis {
   std::uint32_t key() const { return key_; }
   std::uint32_t period() const { return period_; }  // cells; 0: 2^32
   // The index `steps` cells from `index`, wrapped.
-  std::uint32_t moved(std::uint32_t index, int steps) const;
+  std::uint32_t moved(std::uint32_t index, std::int64_t steps) const;
 
  private:
   std::uint32_t key_ = 0;

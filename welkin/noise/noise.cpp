@@ -51,6 +51,14 @@ double apply(const Affine& a, double v) {
   return std::clamp(a.scale * v + a.bias, a.low, a.high);
 }
 
+bool isFinite(const glm::dvec3& p, int dimensions) {
+  for (int i = 0; i < dimensions; ++i)
+    if (!std::isfinite(p[i])) return false;
+  return true;
+}
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
 }  // namespace
 
 struct Noise::Impl {
@@ -73,9 +81,8 @@ int Noise::channels() const {
 double Noise::sample(const glm::dvec3& p, int channel) const {
   assert(channel >= 0 && channel < channels());
   const Plan& plan = impl_->plan;
+  if (!isFinite(p, static_cast<int>(params_.dimensions))) return kNoNumber;
   std::array<double, 4> place{p.x, p.y, p.z, 0.0};
-  for (int i = 0; i < params_.dimensions; ++i)
-    if (!std::isfinite(place[i])) return std::numeric_limits<double>::quiet_NaN();
   const std::array<double, 3> inSpace{p.x, p.y, p.z};
   place[static_cast<std::size_t>(params_.dimensions)] = params_.time.value_or(0.0);
   double raw = 0.0;
@@ -109,6 +116,7 @@ Noise::Slope Noise::sampleSlope(const glm::dvec3& p) const {
   const bool value = params_.kind == Kind::kValue;
   if ((params_.kind != Kind::kPerlin && !value) || params_.fractal != Fractal::kFbm)
     throw ParameterError("only sums (fbm) of Perlin and value noise have slopes");
+  if (!isFinite(p, static_cast<int>(params_.dimensions))) return {kNoNumber, glm::dvec3(kNoNumber)};
   if (value) {
     const ValueAndSlope s = valueSlope(impl_->plan.values, params_, p);
     return {s.value, s.slope};

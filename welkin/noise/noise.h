@@ -60,8 +60,8 @@ class Noise {
   // The value at p, in units of the domain, normalised; NaN where p is not finite. 0 <= channel < channels().
   double sample(const glm::dvec3& p, int channel = 0) const;
 
-  // Value and derivatives by p, of the raw sum. For Kind::kPerlin and Fractal::kFbm; throws ParameterError
-  // for others.
+  // Value and derivatives by p, of the raw sum; NaN where p is not finite. For Fractal::kFbm of Kind::kPerlin
+  // and Kind::kValue; throws ParameterError for others.
   struct Slope {
     double value;
     glm::dvec3 gradient;  // per unit of the domain

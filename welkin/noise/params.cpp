@@ -6,6 +6,7 @@
 
 #include "welkin/core/error.h"
 #include "welkin/core/param_range.h"
+#include "welkin/noise/plan.h"
 
 namespace welkin::noise {
 namespace {
@@ -60,16 +61,26 @@ void validate(const NoiseParams& p) {
     require(isWhole(p.lacunarity) || p.octaves == 1, "noise that tiles needs a whole lacunarity");
   }
   const double last = std::pow(p.lacunarity, static_cast<double>(p.octaves - 1));
-  for (int axis = 0; axis < p.dimensions; ++axis)
+  // Cells are counted where they repeat: integers hold 2^32.
+  const double narrowest = p.tile && p.kind == Kind::kDistorted
+                               ? kDistortionStretch[static_cast<std::size_t>(p.dimensions - 1)]
+                               : 1.0;
+  for (int axis = 0; axis < p.dimensions; ++axis) {
     require(p.frequency[axis] * last <= 1e9, "the noise's last octave has more than 1e9 cells a unit");
+    require(
+        p.frequency[axis] * last * narrowest <= 4e9,
+        "the last octave of what distorts noise that tiles has more than 4e9 cells a unit; it has 7.77 times "
+        "as many as the noise, in a plane 3.33");
+  }
   require(p.timePeriod == 0.0 || p.time,
           "the noise has a time_period and no time: without a time it does not evolve");
+  const double pace = std::pow(p.timeLacunarity, static_cast<double>(p.octaves - 1));
+  require(!p.time || pace <= 1e9, "the noise's last octave evolves more than 1e9 times as fast as the first");
   if (p.timePeriod > 0.0) {
     require(isWhole(p.timePeriod), "the noise's time_period is not a whole number of cells");
     require(isWhole(p.timeLacunarity) && p.timeLacunarity >= 1.0,
             "evolution that repeats needs a whole time_lacunarity of at least 1");
-    require(p.timePeriod * std::pow(p.timeLacunarity, static_cast<double>(p.octaves - 1)) <= 1e9,
-            "the noise's last octave repeats after more than 1e9 cells of time");
+    require(p.timePeriod * pace <= 1e9, "the noise's last octave repeats after more than 1e9 cells of time");
   }
   const bool signs = p.kind == Kind::kPerlin || p.kind == Kind::kValue || p.kind == Kind::kDistorted;
   require(signs || p.fractal == Fractal::kFbm,

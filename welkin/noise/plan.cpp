@@ -272,9 +272,9 @@ Plan makePlan(const NoiseParams& p) {
     case Kind::kDistorted:
       for (int o = 0; o < p.octaves; ++o) {
         DistortedTerm t{b.lattice(kNoise, 0, o), {}, b.weight(o)};
-        constexpr double kStretch[] = {1.0, 3.33, 7.77};
         for (int i = 0; i < dimensions; ++i)
-          t.fields.push_back({b.lattice(kDistortion, i, o, kStretch[i], 0.5), 1.0});
+          t.fields.push_back(
+              {b.lattice(kDistortion, i, o, kDistortionStretch[static_cast<std::size_t>(i)], 0.5), 1.0});
         plan.distorted.push_back(std::move(t));
       }
       break;

@@ -56,6 +56,9 @@ struct Plan {
 
 Plan makePlan(const NoiseParams& params);
 
+// Frequencies of the fields that distort along x, y and z, of the noise's.
+inline constexpr std::array<double, 3> kDistortionStretch = {1.0, 3.33, 7.77};
+
 // What a sum takes of one octave.
 inline double shaped(Fractal fractal, double n) {
   switch (fractal) {

@@ -34,6 +34,18 @@ TEST(NoiseParams, RefuseWhatDoesNotFitTogether) {
   refused([](NoiseParams& p) { p.kind = Kind::kCurl, p.table = Table::kPublished; });
   refused(
       [](NoiseParams& p) { p.kind = Kind::kPerlinWorley, p.normalisation = Normalisation::kUnitVariance; });
+  // Integers hold what the last octave comes to.
+  refused([](NoiseParams& p) { p.time = 1.0, p.octaves = 24, p.timeLacunarity = 16.0, p.lacunarity = 1.0; });
+  const auto distorted = [](double cells) {
+    return [cells](NoiseParams& p) {
+      p.kind = Kind::kDistorted, p.octaves = 4, p.lacunarity = 16.0, p.frequency = glm::dvec3(1, 1, cells);
+    };
+  };
+  refused(distorted(2e5));  // times 4096 times 7.77
+  NoiseParams held;
+  distorted(1e5)(held);
+  EXPECT_NO_THROW(Noise{held});
+  EXPECT_NO_THROW((Noise{{.octaves = 24, .lacunarity = 1.0, .timeLacunarity = 16.0}})) << "without a time";
 }
 
 TEST(NoiseFill, RefusesWrongBuffersAndBoxes) {

@@ -111,6 +111,19 @@ TEST(Axis, CountsEveryCellFarAway) {
   }
 }
 
+// A step of rounding farther than integers count, and a product beyond doubles.
+TEST(Axis, HasAPlaceHoweverFarAway) {
+  const Axis axis(1, 8192.0, 1.0, 0.0);
+  for (const double p : {1e25, -1e25, 1e40, -1e40, 1e300, 1e308, -1e308}) {
+    const Span s = axis.at(p);
+    EXPECT_EQ(s.high, s.low + 1) << p;
+    EXPECT_TRUE(s.inside >= 0.0 && s.inside < 1.0) << p;
+  }
+  // 2^84 + 3 cells, of which the product holds the first alone.
+  const double cells = std::ldexp(1.0, 84);
+  EXPECT_EQ(Axis(1, 1.0, 0.0, 0.0, 3.0 + 4294967296.0 * 5.0).at(cells).low, 3U);
+}
+
 TEST(Perlin, HasTheKnownSpread) {
   for (const int dimensions : {2, 3})
     for (const bool evolving : {false, true}) {
@@ -167,6 +180,19 @@ TEST(Perlin, TilesWithAnyPeriod) {
         }
       }
     }
+}
+
+TEST(Perlin, HasNoSlopeWhereThereIsNoPlace) {
+  for (const Kind kind : {Kind::kPerlin, Kind::kValue}) {
+    const Noise noise({.kind = kind});
+    for (const double nowhere : {HUGE_VAL, -HUGE_VAL, std::nan("")})
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 p(0.25);
+        p[axis] = nowhere;
+        const Noise::Slope s = noise.sampleSlope(p);
+        EXPECT_TRUE(std::isnan(s.value) && std::isnan(s.gradient.x) && std::isnan(s.gradient.z));
+      }
+  }
 }
 
 TEST(Perlin, HasTheSlopesOfFiniteDifferences) {
