@@ -12,8 +12,7 @@
 // the earth's radius does not fit. Light in linear Rec. 709 (cd/m2, lux), extinction in 1/m. All tables want linear filtering and
 // clamping at the edges.
 
-// How a table's coordinate in [0, 1] meets texel centres: ends fall on the first and last centre. Sizes are in welkin/sky/atmosphere.h's
-// tables; these constants must agree with them.
+// Sizes of the tables in texels. The ends of a table's coordinates, 0 and 1, fall on the centres of its first and last texel.
 WELKIN_CONST float kTransmittanceWidth = 256.0f;   // by direction
 WELKIN_CONST float kTransmittanceHeight = 64.0f;   // by altitude
 WELKIN_CONST float kMultipleScatteringSize = 32.0f;  // of each of the moments, one beside another along y
@@ -359,6 +358,7 @@ WELKIN_FN AtmosphereRay atmosphereRayAtEye() { return AtmosphereRay(vec3(0.0f), 
 // Airglow comes from a thin shell and so grows towards the horizon: P. J. van Rhijn 1921, "On the brightness of the sky at night and
 // the total amount of starlight". What the air takes from the straight ray it partly gives back from the rest of the dome, more so over
 // bright ground: between half (black ground) and all (white) of the dome's mean luminance, as from any conservative slab under a uniform sky.
+// None is seen from above the shell.
 WELKIN_CONST float kAirglowMean = 1.71f;  // of the dome, weighted by the cosine, over the zenith's (van Rhijn at 90 km)
 WELKIN_FN vec3 atmosphereAirglow(Atmosphere a, sampler2D transmittanceLut, float h, float mu) {
   if (h >= a.airglowAltitudeM) return vec3(0.0f);

@@ -63,8 +63,6 @@ void visitFields(const AtmosphereUniforms& u, F&& f) {
 AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double visibilityM,
                                       double groundAltitudeM, glm::vec3 groundAlbedo);
 
-// The atmosphere and the two tables that depend on nothing else. Immutable; safe to share between threads.
-// The tables are computed in the constructor by parallelFor, the same with any number of threads.
 // Light from many directions by its moments over them.
 struct LightMoments {
   glm::vec3 total{0};                // integral of the luminance, lm/m2 for all sides of a small ball
@@ -76,6 +74,8 @@ struct LightMoments {
 LightMoments operator+(const LightMoments& a, const LightMoments& b);
 LightMoments operator*(float share, const LightMoments& m);
 
+// The atmosphere and the two tables that depend on nothing else. Immutable; safe to share between threads.
+// The tables are computed in the constructor by parallelFor, the same with any number of threads.
 class Atmosphere {
  public:
   // visibilityM: at the ground, by a contrast of 2 %, Koschmieder: total extinction there is 3.912 /
@@ -97,8 +97,9 @@ class Atmosphere {
   glm::vec3 transmittanceToSpace(double altitudeM, double mu) const;
   // Of light from all directions below, the share that the air above a point sends back down.
   glm::vec3 sphericalAlbedo(double altitudeM) const;
-  // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs). Towards the
-  // ground: of the air in front of it alone.
+  // Luminance of the clear sky seen from a point, ray-marched, all lights and airglow (no discs). Airglow is
+  // seen from below its shell at 90 km, and nothing of it from higher up. Towards the ground: of the air in
+  // front of it alone.
   glm::vec3 skyLuminance(double altitudeM, glm::vec3 direction, std::span<const Light> lights) const;
   // Illuminance of a horizontal plane facing up by the clear sky alone.
   glm::vec3 skyIlluminance(double altitudeM, std::span<const Light> lights) const;

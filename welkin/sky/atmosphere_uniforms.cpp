@@ -39,7 +39,7 @@ constexpr glm::dvec3 kAngstromWavelengthNm{640.4, 545.6, 441.6};
 constexpr glm::vec3 kAirglowColour{1.0894f, 0.9776f, 0.9582f};
 constexpr double kAirglowAltitudeM = 90e3;
 
-// Haze is coloured where its particles are small and grey where they are fog: exponent 1.6 (dry continental
+// Haze is coloured where its particles are small and grey where they are fog: exponent 1.8 (dry continental
 // haze) at 20 km of visibility and beyond, 0 at 1 km.
 double angstromExponent(double visibilityM) {
   return 1.8 * std::clamp(std::log(std::max(visibilityM, 1.0) / 1e3) / std::log(20.0), 0.0, 1.0);
