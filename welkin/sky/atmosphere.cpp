@@ -11,14 +11,9 @@
 namespace welkin::sky {
 namespace {
 
+using shared::store;
 using shared::vec2;
 using shared::vec3;
-
-void store(float* p, const vec3& v) {
-  p[0] = v.x;
-  p[1] = v.y;
-  p[2] = v.z;
-}
 
 Image<float> makeTransmittance(const shared::Atmosphere& a) {
   const int w = static_cast<int>(shared::kTransmittanceWidth),

@@ -12,6 +12,13 @@ using namespace welkin::glsl;
 // Keeps the order: the second file uses the first.
 #include "shaders/lib/atmosphere.glsl"
 
+// Into a texel of a table.
+inline void store(float* p, const vec3& v) {
+  p[0] = v.x;
+  p[1] = v.y;
+  p[2] = v.z;
+}
+
 inline Atmosphere fromUniforms(const AtmosphereUniforms& u) {
   Atmosphere a;
   a.seaRadiusM = u.seaRadiusM;

@@ -33,10 +33,6 @@ constexpr double kOzoneHalfWidthM = 15e3;
 // to 2.
 constexpr glm::dvec3 kAngstromWavelengthNm{640.4, 545.6, 441.6};
 
-// Colour of the natural night sky without moon, photometric weight 1: about that of sunlight (C. Leinert et
-// al. 1998, "The 1997 reference of diffuse night sky brightness": airglow, zodiacal light and starlight
-// together are little redder than the sun).
-constexpr glm::vec3 kAirglowColour{1.0894f, 0.9776f, 0.9582f};
 constexpr double kAirglowAltitudeM = 90e3;
 
 // Haze is coloured where its particles are small and grey where they are fog: exponent 1.8 (dry continental
@@ -82,7 +78,10 @@ AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double vis
   u.ozoneAltitudeM = static_cast<float>(kOzoneAltitudeM);
   u.ozoneHalfWidthM = static_cast<float>(kOzoneHalfWidthM);
   u.groundAlbedo = groundAlbedo;
-  u.airglow = kAirglowColour * static_cast<float>(params.airglowCdPerM2);
+  // The natural night sky without moon has about the colour of sunlight (C. Leinert et al. 1998, "The 1997
+  // reference of diffuse night sky brightness": airglow, zodiacal light and starlight together are little
+  // redder than the sun).
+  u.airglow = sunlightColour() * static_cast<float>(params.airglowCdPerM2);
   u.airglowAltitudeM = static_cast<float>(kAirglowAltitudeM);
   return u;
 }

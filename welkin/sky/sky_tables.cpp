@@ -10,6 +10,7 @@
 namespace welkin::sky {
 namespace {
 
+using shared::store;
 using shared::vec2;
 using shared::vec3;
 
@@ -17,12 +18,6 @@ void add(float* p, const vec3& v) {
   p[0] += v.x;
   p[1] += v.y;
   p[2] += v.z;
-}
-
-void store(float* p, const vec3& v) {
-  p[0] = v.x;
-  p[1] = v.y;
-  p[2] = v.z;
 }
 
 // Everything that the tables are made from.

@@ -84,7 +84,7 @@ float starlightShare(double sunElevationDeg) {
 }
 
 PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM, float pixelRad) {
-  constexpr double kEarthRadiusM = 6.371e6, kMarginRad = 0.1;
+  constexpr double kMarginRad = 0.1;
   constexpr double kByDay = 150.0;  // cd/m2
   const double lowest = -std::sqrt(2.0 * std::max(eyeM, 0.0) / kEarthRadiusM) - kMarginRad;
   const float others = starlightShare(ephemeris.sun.elevationDeg);
