@@ -19,8 +19,8 @@ WELKIN_FN float phaseHenyeyGreenstein(float c, float g) {
   return kInvFourPi * (1.0f - g * g) / (d * sqrt(d));
 }
 
-// B. T. Draine 2003, "Scattering by interstellar dust grains. I", eq. 4: Henyey-Greenstein (alpha 0) to Cornette-Shanks (alpha 1),
-// which becomes Rayleigh at g = 0.
+// B. T. Draine 2003, "Scattering by interstellar dust grains. I", eq. 4: Henyey-Greenstein (alpha 0) to what W. M. Cornette and
+// J. G. Shanks 1992 have (alpha 1), which becomes Rayleigh at g = 0.
 WELKIN_FN float phaseDraine(float c, float g, float alpha) {
   return phaseHenyeyGreenstein(c, g) * (1.0f + alpha * c * c) / (1.0f + alpha * (1.0f + 2.0f * g * g) / 3.0f);
 }
@@ -29,10 +29,6 @@ WELKIN_FN float phaseDraine(float c, float g, float alpha) {
 WELKIN_FN float draineMeanCosine(float g, float alpha) {
   return g * (1.0f + alpha * (3.0f + 2.0f * g * g) / 5.0f) / (1.0f + alpha * (1.0f + 2.0f * g * g) / 3.0f);
 }
-
-// Haze: W. M. Cornette and J. G. Shanks 1992, "Physically reasonable analytic expression for the single-scattering phase function".
-// g is the parameter; the mean cosine is a little larger in magnitude: draineMeanCosine(g, 1).
-WELKIN_FN float phaseCornetteShanks(float c, float g) { return phaseDraine(c, g, 1.0f); }
 
 // Haze with mean cosine g, up to 0.9: not quite half of the light goes into the narrow peak of coarse particles, which makes the sun's
 // aureole; the rest, by fine ones, sidewards. Two Henyey-Greenstein lobes as G. W. Kattawar 1975, "A three-parameter analytic phase function

@@ -25,9 +25,6 @@ float phaseHenyeyGreenstein(float c, float g) {
 float phaseDraine(float c, float g, float alpha) {
   return shared::phaseDraine(c, g, alpha);
 }
-float phaseCornetteShanks(float c, float g) {
-  return shared::phaseCornetteShanks(c, g);
-}
 float phaseHaze(float c, float g) {
   return shared::phaseHaze(c, g);
 }

@@ -14,7 +14,6 @@ namespace welkin::optics {
 float phaseRayleigh(float c);
 float phaseHenyeyGreenstein(float c, float g);
 float phaseDraine(float c, float g, float alpha);
-float phaseCornetteShanks(float c, float g);
 float phaseHaze(float c, float g);  // two lobes; g: mean cosine, up to 0.9
 float phaseIce(float c);            // crystals of many shapes, without halos, as snow has them
 // Its narrow lobe, Henyey and Greenstein's: share of the light, and mean cosine.
@@ -26,7 +25,7 @@ IcePeak icePeak();
 // How cloud droplets scatter: by the fit below, or by Mie's theory, with fogbow and glory.
 enum class DropletModel { kFit, kMie };
 
-// Mean cosine of a Draine (and, with alpha = 1, of a Cornette-Shanks) phase function.
+// Mean cosine of phaseDraine().
 float draineMeanCosine(float g, float alpha);
 
 // Water droplets by the fit of Jendersie and d'Eon 2023: a Henyey-Greenstein and a Draine lobe.

@@ -58,8 +58,8 @@ TEST(Phase, DraineHasItsMeanCosine) {
   }
 }
 
-TEST(Phase, CornetteShanksBecomesRayleigh) {
-  for (float c : {-1.0f, -0.2f, 0.7f}) EXPECT_NEAR(phaseCornetteShanks(c, 0.0f), phaseRayleigh(c), 1e-7f);
+TEST(Phase, DraineBecomesRayleigh) {
+  for (float c : {-1.0f, -0.2f, 0.7f}) EXPECT_NEAR(phaseDraine(c, 0.0f, 1.0f), phaseRayleigh(c), 1e-7f);
 }
 
 TEST(Phase, HazeHasItsMeanCosine) {
