@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
@@ -38,6 +39,7 @@ struct Case {
 
 std::vector<Case> readCases(int every) {
   std::ifstream in(WELKIN_METAR_EXAMPLES);
+  if (!in) throw IoError("cannot read " WELKIN_METAR_EXAMPLES);
   std::vector<Case> cases;
   int n = 0;
   for (std::string line; std::getline(in, line);) {
@@ -59,6 +61,7 @@ std::vector<Case> readCases(int every) {
     c.worst.assign(c.weather.layers.size() + 1, 0.0);
     cases.push_back(std::move(c));
   }
+  if (in.bad()) throw IoError("cannot read all of " WELKIN_METAR_EXAMPLES);
   return cases;
 }
 
@@ -84,7 +87,17 @@ void measure(Case& c, int seed, const std::shared_ptr<const field::CloudNoise>& 
 int main(int argc, char** argv) {
   const int every = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 1;
   const int seeds = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 8;
-  std::vector<Case> cases = readCases(every);
+  std::vector<Case> cases;
+  try {
+    cases = readCases(every);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "cover_bench: %s\n", e.what());
+    return 1;
+  }
+  if (cases.empty()) {
+    std::fputs("cover_bench: there are no reports\n", stderr);
+    return 1;
+  }
   const auto start = std::chrono::steady_clock::now();
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(seed));
