@@ -47,8 +47,8 @@ Texels readExrTexels(const std::filesystem::path& path);
 // show as layers.
 struct ExrPlanes {
   int width = 0, height = 0;
-  std::map<std::string, std::vector<float>>
-      planes;  // one at least, each of all pixels row by row from the top
+  // One at least, each of all pixels row by row from the top.
+  std::map<std::string, std::vector<float>> planes;
   std::map<std::string, std::string> metadata;
   bool half = false;  // writes halves, values beyond their range clamped; after reading: all were
 };

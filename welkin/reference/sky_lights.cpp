@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "welkin/reference/directions.h"
+#include "welkin/sky/light.h"
 
 namespace welkin::reference {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 // "Wavelength dependency of the Solar limb darkening", at 550 nm.
 constexpr double kLimb = 0.41;
 constexpr double kMostSecond = 0.9;  // chance of the second light: the first may be up where light goes next
-constexpr double kLeastLit = 0.005;  // of the moon, as wherever its disc is drawn
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
@@ -30,7 +30,7 @@ SkyLights::SkyLights(const scene::SkyState& state, const Air& air, const Sphere&
     const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction));
     discs_.push_back({isSun, direction, glm::dvec3(light.illuminance), turned(direction, 0.0, 0.0),
                       turned(direction, 0.0, 0.5 * kPi), body.angularRadiusRad,
-                      isSun ? 1.0 : std::max(state.ephemeris.moonIlluminatedFraction, kLeastLit),
+                      isSun ? 1.0 : sky::moonDiscMean(state.ephemeris.moonPhaseAngleRad),
                       AirToLight(air, earth, direction)});
   }
 }

@@ -39,7 +39,7 @@ class SkyLights {
     glm::dvec3 direction, illuminance;
     glm::dvec3 east, north;  // unit, across the direction and each other
     double radius;           // rad
-    double share;            // of the disc that is lit
+    double share;            // mean luminance over the disc, of what is drawn on it
     AirToLight through;
   };
   const Sphere* earth_;
