@@ -20,9 +20,15 @@ constexpr double kCellShare = 0.75;    // of the widest cloud
 constexpr double kLeastSize = 0.5;     // of the largest cloud
 constexpr double kReach = 45.0;        // widths of the widest cloud
 constexpr double kLeastReachM = 10000.0, kMostReachM = 45000.0;
+constexpr double kFarBases = 20.0;  // heights of the base, of layers that cover more
+constexpr double kClosest = 0.4;    // of the cells' size
+constexpr double kMostClouds = 40000.0, kMostFar = 0.35 * kMostClouds;  // where they stand closer, and else
+constexpr double kClosed = 0.98;    // share of the sky that is as good as all of it
+constexpr double kMuch = 3.0;       // of fill()
+constexpr double kShort = 0.4;      // oktas that are no matter
 constexpr double kCycleS = 4800.0;  // in which a cell's rank goes up and down once
 constexpr double kYoung = 0.35;     // share of the threshold over which a cloud grows up
-constexpr int kDirections = 1200, kBisections = 12;
+constexpr int kDirections = 1200, kBisections = 14;
 constexpr double kMeasuredM = 2.0;  // height of the eye
 
 double widestM(const weather::Layer& layer, const std::vector<LibraryCloud>& library) {
@@ -53,17 +59,34 @@ field::Metaball placed(const field::Metaball& ball, const MetaballLayer::Cloud& 
 
 MetaballLayer::MetaballLayer(const weather::Layer& layer, std::uint64_t seed, double earthRadiusM)
     : layer_(layer), seed_(seed), earthRadiusM_(earthRadiusM), flat_(layer.topM - layer.baseM < kFlatBelowM) {
-  const double widthM = widestM(layer, libraryOf(flat_));
-  cellM_ = kCellShare * widthM;
-  reachM_ = std::clamp(kReach * widthM, kLeastReachM, kMostReachM);
   if (layer.oktas <= 0.0) return;
-  double low = 0.0, high = 1.0 / (1.0 - kYoung);  // at which every cloud is grown up
+  const double wanted = std::min(layer.oktas / 8.0, kClosed);
+  const auto coverWith = [&](double much) {
+    fill(much);
+    return field::coverOf(opticalDepths(0.0, glm::dvec2(0.0), kDirections));
+  };
+  double low = 0.0, high = kMuch;
   for (int i = 0; i < kBisections; ++i) {
-    threshold_ = 0.5 * (low + high);
-    const double cover = field::coverOf(opticalDepths(0.0, glm::dvec2(0.0), kDirections));
-    (cover < layer.oktas / 8.0 ? low : high) = threshold_;
+    const double middle = 0.5 * (low + high);
+    (coverWith(middle) < wanted ? low : high) = middle;
   }
-  threshold_ = high;
+  const double most = coverWith(high);
+  if (high == kMuch && 8.0 * most < layer.oktas - kShort) mostOktas_ = 8.0 * most;
+}
+
+// Up to 1 in more and more cells, up to 2 larger and farther out, up to 3 closer.
+void MetaballLayer::fill(double much) {
+  const double larger = std::clamp(much - 1.0, 0.0, 1.0), closer = std::clamp(much - 2.0, 0.0, 1.0);
+  threshold_ = std::min(much, 1.0) / (1.0 - kYoung);  // at 1 every cloud is grown up
+  leastSize_ = glm::mix(kLeastSize, 1.0, larger);
+  const double widthM = widestM(layer_, library());
+  cellM_ = kCellShare * widthM;
+  const auto reachOf = [&](double clouds) { return cellM_ * std::sqrt(clouds / kPi); };
+  const double nearM = std::clamp(kReach * widthM, kLeastReachM, kMostReachM);
+  const double farM = std::min({kFarBases * layer_.baseM, kMostReachM, reachOf(kMostFar)});
+  reachM_ = glm::mix(nearM, std::max(nearM, farM), larger);
+  const double closest = std::clamp(reachM_ / reachOf(kMostClouds), kClosest, 1.0);
+  cellM_ *= glm::mix(1.0, closest, closer);
 }
 
 const std::vector<LibraryCloud>& MetaballLayer::library() const {
@@ -92,7 +115,7 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
       // Many small ones for each large one.
       const double u = random.uniform();
       cloud.widthM =
-          widthM * (kLeastSize + (1.0 - kLeastSize) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
+          widthM * (leastSize_ + (1.0 - leastSize_) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
       cloud.turnRad = 2.0 * kPi * random.uniform();
       cloud.shape = random.below(static_cast<std::uint32_t>(library().size()));
       cloud.extinctionPerM = layer_.extinctionPerM * glm::smoothstep(0.0, 1.0, 3.0 * age);

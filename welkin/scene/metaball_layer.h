@@ -3,11 +3,14 @@
 // placed by hashes of its cell in an endless lattice that drifts with the layer's wind.
 //
 // Every cell has a rank in [0, 1] and the cells whose rank is below a threshold have a cloud, the larger and
-// denser the further below. The threshold is where the sky's measured cover is what was asked for. In time
-// ranks wander evenly up and down, so that clouds grow and decay while as many stay: a pure function of time.
+// denser the further below. The threshold is where the sky's measured cover is what was asked for; where all
+// cells have a cloud by then, clouds are larger, reach farther out and stand closer, as far as it takes. In
+// time ranks wander evenly up and down, so that clouds grow and decay while as many stay: a pure function of
+// time.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "welkin/field/metaballs.h"
@@ -18,7 +21,7 @@ namespace welkin::scene {
 
 class MetaballLayer {
  public:
-  // Finds the threshold, by bisection, from the ground at the place. Some seconds, the first time.
+  // Finds how much there must be, by bisection, from the ground at the place. Some seconds, the first time.
   MetaballLayer(const weather::Layer& layer, std::uint64_t seed, double earthRadiusM);
 
   struct Cloud {
@@ -36,15 +39,20 @@ class MetaballLayer {
   // Optical depths in directions spread evenly over the hemisphere, from the ground at the place.
   std::vector<float> opticalDepths(double secondsAfter, const glm::dvec2& driftedM, int directions) const;
 
+  // Where that is clearly less than was asked for: the most that could be covered.
+  std::optional<double> mostOktas() const { return mostOktas_; }
   const weather::Layer& layer() const { return layer_; }
   bool isFlat() const { return flat_; }  // its clouds are the library's flat ones, not towers
 
  private:
+  void fill(double much);
+
   weather::Layer layer_;
   std::uint64_t seed_;
   double earthRadiusM_;
   bool flat_;
-  double cellM_, reachM_, threshold_ = 0.0;
+  std::optional<double> mostOktas_;
+  double threshold_ = 0.0, leastSize_ = 1.0, cellM_ = 1.0, reachM_ = 0.0;
 };
 
 // From distances along the ground about the eye and height over it to the tangent plane.

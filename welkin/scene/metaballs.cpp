@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
 #include "welkin/field/metaball_motion.h"
@@ -131,6 +132,20 @@ MetaballSky::MetaballSky(const Scene& scene, const weather::Weather& weather, do
     placed.middleM = 0.5 * (box.low + box.high);
     clouds_.push_back(std::move(placed));
   }
+}
+
+std::vector<std::string> MetaballSky::warnings() const {
+  std::vector<std::string> all;
+  for (const Filled& filled : layers_) {
+    const weather::Layer& layer = filled.layer.layer();
+    if (const std::optional<double> most = filled.layer.mostOktas())
+      all.push_back(
+          "the " + std::string(kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)]) + " from " +
+          numberText(layer.baseM) + " to " + numberText(layer.topM) + " m covers " +
+          numberText(std::round(10.0 * *most) / 10.0) + " oktas and not " + numberText(layer.oktas) +
+          ": more metaballs are too many; a thicker or a lower layer covers more, and so do volumes");
+  }
+  return all;
 }
 
 glm::dvec2 MetaballSky::driftOf(const Filled& filled, double secondsAfter) const {

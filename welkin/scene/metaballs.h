@@ -115,6 +115,9 @@ class MetaballSky {
 
   bool empty() const { return clouds_.empty() && layers_.empty(); }
 
+  // Layers that cover less than was asked of them, a sentence each.
+  std::vector<std::string> warnings() const;
+
   // Of a layer of the weather, by its number there, that is drawn so: optical depths in directions spread
   // evenly over the hemisphere (field::hemisphereDirection), from the ground at the place.
   std::vector<float> layerOpticalDepths(std::size_t layer, double secondsAfter, int directions) const;

@@ -384,6 +384,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.sheetCover = std::move(cover.sheets);
   s.skyCover = cover.sky;
   s.warnings = textureWarnings(scene);
+  for (std::string& warning : s.metaballs->warnings()) s.warnings.push_back(std::move(warning));
   s.atmosphere = std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
                                                    scene.place.altitudeM, glm::vec3(scene.ground.albedo));
   for (ClearSkyKey& none : s.clearSky) none.atS = std::numeric_limits<double>::quiet_NaN();

@@ -85,7 +85,7 @@ struct SkyState {
   std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
   LayerCover skyCover;                 // the whole sky
-  std::vector<std::string> warnings;   // files that could not be used, and what stands in for them
+  std::vector<std::string> warnings;   // files that could not be used, covers that cannot be met
   double headingDeg = 0.0;             // the camera's, with "absent" resolved
 };
 

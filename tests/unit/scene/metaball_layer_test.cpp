@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "tests/testing/skies.h"
@@ -68,6 +69,31 @@ TEST(MetaballLayer, DeliversTheCoverAskedFor) {
     EXPECT_EQ(state.cover.at(0).requestedOktas, oktas);
   }
   EXPECT_TRUE(ballsOf(buildSky(heaps(0.0), 0.0), 0.0).balls.empty());
+}
+
+// Where grown-up clouds in all cells are too few, they become larger and stand closer.
+TEST(MetaballLayer, CoversTheWholeSky) {
+  for (const auto genus :
+       {weather::Genus::kCumulus, weather::Genus::kStratocumulus, weather::Genus::kCumulonimbus})
+    for (const double oktas : {7.0, 8.0}) {
+      Scene s = testing::cloudyScene(50.0, {genus}, oktas);
+      s.technique = Technique::kMetaballs;
+      const SkyState state = buildSky(s, 0.0);
+      EXPECT_NEAR(state.cover.at(0).deliveredOktas, oktas, 0.4) << static_cast<int>(genus);
+      EXPECT_TRUE(state.warnings.empty());
+    }
+}
+
+TEST(MetaballLayer, SaysWhatItCannotCover) {
+  Scene s = heaps(8.0);
+  s.layers[0].baseM = 2400.0;
+  s.layers[0].topM = 2500.0;
+  const SkyState state = buildSky(s, 0.0);
+  EXPECT_LT(state.cover.at(0).deliveredOktas, 7.6);
+  ASSERT_EQ(state.warnings.size(), 1u);
+  EXPECT_NE(state.warnings[0].find("the cumulus from 2400 to 2500 m covers"), std::string::npos)
+      << state.warnings[0];
+  EXPECT_NE(state.warnings[0].find("and not 8"), std::string::npos);
 }
 
 // Clouds come and go and drift, and the sky stays as cloudy on the whole; any instant is found without
