@@ -195,19 +195,26 @@ std::vector<Builder::Reported> Builder::settleBases() {
     // From the ground up; what is at one height stays in the report's order.
     layers.insert(std::upper_bound(layers.begin(), layers.end(), r, lower), r);
   }
-  if (unobserved && layers.empty() && !metar_.skyObscured && present_.fog != FogKind::kFog) {
-    if (present_.kind != PrecipitationKind::kNone && present_.character != PrecipitationCharacter::kNone) {
+  if (layers.empty() && !metar_.cavok && !metar_.skyObscured && present_.fog != FogKind::kFog) {
+    const bool falls =
+        present_.kind != PrecipitationKind::kNone && present_.character != PrecipitationCharacter::kNone;
+    const bool clear = !unobserved && metar_.clear != MetarClear::kNotSaid;
+    const std::string why =
+        unobserved ? "The station cannot observe cloud" : "The report says nothing about cloud";
+    if (clear) {
+      if (falls) note("Precipitation falls from a sky that is said to be without cloud; none is drawn.");
+    } else if (falls) {
       // It falls from somewhere.
       const bool showers = present_.character == PrecipitationCharacter::kShowers;
       const MetarLayer assumed{showers ? MetarCover::kBroken : MetarCover::kOvercast,
                                {},
                                showers ? MetarCloudType::kToweringCumulus : MetarCloudType::kNone};
       layers.push_back({assumed.cover, assumed.type, climatologicalBaseM(assumed), true});
-      note("The station cannot observe cloud, but precipitation falls: " +
-           std::string(showers ? "broken towering cumulus" : "an overcast") + " at the climatological " +
-           metres(layers.back().baseM) + " is assumed.");
+      note(why +
+           ", but precipitation falls: " + std::string(showers ? "broken towering cumulus" : "an overcast") +
+           " at the climatological " + metres(layers.back().baseM) + " is assumed.");
     } else {
-      note("The station cannot observe cloud; none is drawn.");
+      note(why + "; none is drawn.");
     }
   }
   if (layers.size() > kMaxLayers - 1) {  // one place is kept for fog

@@ -68,6 +68,29 @@ TEST(FromMetar, ShaftsOfRainFallFromHeapsAndStorms) {
   EXPECT_GT(rainOf("+TSRA SCT030CB")[0], 10.0);
 }
 
+// Without a word about cloud precipitation falls from some; where there is said to be none, that is noted.
+TEST(FromMetar, PrecipitationNeedsCloud) {
+  const auto of = [](const std::string& groups) {
+    return weatherOf("KJFK 211551Z 22005KT 9SM " + groups + " 12/11 A2990");
+  };
+  const Weather rain = of("+RA");
+  EXPECT_EQ(generaOf(rain), std::vector{Genus::kNimbostratus});
+  EXPECT_EQ(rain.requestedOktas, 8.0);
+  EXPECT_TRUE(anyNote(rain, "says nothing about cloud, but precipitation falls: an overcast"));
+  EXPECT_TRUE(anyNote(of("SHRA"), "broken towering cumulus"));
+  EXPECT_TRUE(anyNote(of("+RA ///"), "cannot observe cloud, but precipitation falls"));
+  for (const char* clear : {"CLR", "SKC", "NSC", "NCD"}) {
+    const Weather w = of("-RA " + std::string(clear));
+    EXPECT_TRUE(w.layers.empty()) << clear;
+    EXPECT_TRUE(anyNote(w, "Precipitation falls from a sky that is said to be without cloud")) << clear;
+    EXPECT_FALSE(anyNote(of(clear), "cloud")) << clear;
+  }
+  const Weather silent = weatherOf("KJFK 211551Z 22005KT 9SM 12/11 A2990");
+  EXPECT_TRUE(silent.layers.empty());
+  EXPECT_TRUE(anyNote(silent, "The report says nothing about cloud; none is drawn."));
+  EXPECT_FALSE(anyNote(weatherOf("LSZH 211200Z 24005KT CAVOK 20/10 Q1015"), "cloud"));
+}
+
 TEST(FromMetar, SaysWhatOfTheVicinityIsNotDrawn) {
   EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 VCFG FEW030 20/14 Q1015"), "not drawn: VCFG"));
   EXPECT_TRUE(anyNote(weatherOf("LSZH 211200Z 24005KT 9999 VCSH OVC100 20/14 Q1015"), "not drawn: VCSH"));
