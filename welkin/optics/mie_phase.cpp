@@ -11,6 +11,8 @@
 namespace welkin::optics {
 namespace {
 
+static_assert(detail::kMieDiametersUm.back() == kLargestMieDropletUm);
+
 // The column at or below x of those that are interpolated between, and how far x is towards the next.
 struct Between {
   std::size_t first = 0;

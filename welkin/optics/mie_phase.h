@@ -5,7 +5,9 @@
 
 namespace welkin::optics {
 
-// 1/sr. c: cosine of the scattering angle. diameterUm is clamped to the table's 5 to 40. Logarithms are
+inline constexpr double kLargestMieDropletUm = 40.0;
+
+// 1/sr. c: cosine of the scattering angle. diameterUm is clamped to the table's, from 5. Logarithms are
 // linear in the angle and in the logarithm of the diameter; below 0.25 degrees it is constant, and the
 // table's steps are too wide for the peak of the largest droplets. Integrals over the sphere are 1 within two
 // per cent up to 20 um; normalise.

@@ -108,6 +108,18 @@ void validateTable(const T& group, const toml::table& root, std::string_view key
   }
 }
 
+// At the key of [slab] that the message begins with, or at what makes a slab of it.
+void validateSlab(const Scene& scene, const toml::table& root, const std::string& name) {
+  try {
+    validate(scene.slab);
+  } catch (const ParameterError& e) {
+    const std::string_view message = e.what();
+    const toml::node* at = root["slab"][message.substr(0, message.find(' '))].node();
+    if (at == nullptr) at = root.get(scene.slab.opticalDepth ? "slab" : "slab_column");
+    throw errorAt(*at, name, e.what());
+  }
+}
+
 }  // namespace
 
 bool SceneFile::gives(std::string_view path) const {
@@ -135,7 +147,7 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   finishSheets(scene.sheets, root, name);
   validateEach(scene.metaballs, root, "metaballs", name);
   validateTable(scene.skyBox, root, "sky_box", name);
-  validateTable(scene.slab, root, scene.slab.opticalDepth ? "slab" : "slab_column", name);
+  validateSlab(scene, root, name);
   for (MetaballCloud& cloud : scene.metaballs)
     if (!cloud.file.empty()) cloud.file = besideFile(name, cloud.file);
   if (start) scene.sheets.insert(scene.sheets.begin(), start->sheets.begin(), start->sheets.end());

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
+#include "welkin/optics/mie_phase.h"
 
 namespace welkin::scene {
 namespace {
@@ -52,6 +54,9 @@ std::vector<double> Slab::depths() const {
 void validate(const Slab& s) {
   if (s.opticalDepth && !s.columns.empty())
     throw ParameterError("slab has an optical_depth and columns; expected one or the other");
+  if (s.phase == SlabPhase::kMie && s.dropletDiameterUm > optics::kLargestMieDropletUm)
+    throw ParameterError("droplet_diameter_um is " + numberText(s.dropletDiameterUm) + "; expected at most " +
+                         numberText(optics::kLargestMieDropletUm) + " um with phase mie");
   std::int64_t count = 0;
   for (const SlabColumns& c : s.columns) count += c.count;
   if (count > kMaxColumns)

@@ -249,6 +249,9 @@ TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
   expect("seed = 2\n[[metaballs]]\nscale = 2\n", "2:1", "metaballs have no file");
   expect("seed = 2\n[sky_box]\nstrip = \"a.png\"\npx = \"b.png\"\n", "2:1", "a strip and faces");
   expect("[slab]\noptical_depth = 2\n[[slab_column]]\n", "1:1", "an optical_depth and columns");
+  expect("[slab]\noptical_depth = 2\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23",
+         "droplet_diameter_um is 45; expected at most 40 um with phase mie");
+  expect("[[slab_column]]\n[slab]\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23", "at most 40");
   expect("seed = 2\nmetar = \"LSZH 211220Z 24008KT Q10\"\n", "2:9", "metar: column 22 of the report: 'Q10'");
   expect("metar = \"LSZH 211220Z NIL\"\n", "1:9", "NIL");
 }
