@@ -118,6 +118,9 @@ void validateSlab(const Scene& scene, const toml::table& root, const std::string
     if (at == nullptr) at = root.get(scene.slab.opticalDepth ? "slab" : "slab_column");
     throw errorAt(*at, name, e.what());
   }
+  if (scene.slab.empty() && scene.slab != Slab{})
+    throw errorAt(*root.get("slab"), name,
+                  "slab has no optical_depth; expected one, or columns: [[slab_column]]");
 }
 
 }  // namespace

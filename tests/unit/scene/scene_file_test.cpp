@@ -251,6 +251,8 @@ TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
   expect("[slab]\noptical_depth = 2\n[[slab_column]]\n", "1:1", "an optical_depth and columns");
   expect("[slab]\noptical_depth = 2\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23",
          "droplet_diameter_um is 45; expected at most 40 um with phase mie");
+  expect("seed = 2\n[slab]\nthickness_m = 300\n", "2:1",
+         "slab has no optical_depth; expected one, or columns");
   expect("[[slab_column]]\n[slab]\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23", "at most 40");
   expect("seed = 2\nmetar = \"LSZH 211220Z 24008KT Q10\"\n", "2:9", "metar: column 22 of the report: 'Q10'");
   expect("metar = \"LSZH 211220Z NIL\"\n", "1:9", "NIL");
