@@ -94,8 +94,28 @@ void checkSlab(const RenderSettings& r, const RenderArgs& a) {
         "the scene has a [slab], which only the reference renderer traces; expected --renderer reference");
   if (!slab && r.reference && (r.video || r.numbered || r.scene.output.frames > 1))
     throw UsageError("the reference renderer draws one picture; expected a name such as sky.exr and 1 frame");
-  if (slab && (a.resume || a.droplets))
-    throw UsageError("--resume and --droplets are for pictures; expected a scene without [slab]");
+  const std::initializer_list<std::pair<const char*, bool>> ofSkies = {
+      {"--metar", a.metar.has_value()},
+      {"--place", a.place.has_value()},
+      {"--time", a.time.has_value()},
+      {"--at", a.at.has_value()},
+      {"--theme", a.theme.has_value()},
+      {"--eye", a.eye.has_value()},
+      {"--look", a.look.has_value()},
+      {"--projection", a.projection.has_value()},
+      {"--size", a.size.has_value()},
+      {"--technique", a.technique.has_value()},
+      {"--metaballs-as", a.metaballsAs.has_value()},
+      {"--quality", a.quality.has_value()},
+      {"--exposure", a.exposure.has_value()},
+      {"--no-sun-disc", a.noSunDisc},
+      {"--fps", a.fps.has_value()},
+      {"--speed", a.speed.has_value()},
+      {"--resume", a.resume.has_value()},
+      {"--droplets", a.droplets.has_value()}};
+  for (const auto& [flag, given] : ofSkies)
+    if (slab && given)
+      throw UsageError(std::string(flag) + " is for pictures of skies; expected a scene without [slab]");
   if (!slab && !a.out) throw UsageError("render: expected -o OUT, the file to write");
   if (slab && a.out) throw UsageError("-o: a slab has no picture; expected --report FILE.json");
   if (slab && r.report.empty())

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import time
 
-from welkin_program import PROGRAM, ProgramTest, main
+from welkin_program import CUMULUS, PROGRAM, ProgramTest, main
 
 STEPS = """[slab]
 sun_zenith_deg = 60
@@ -60,6 +60,9 @@ class Slab(ProgramTest):
         self.fail_with(2, "expected --renderer reference", *slab, "-o", "x.png")
         self.fail_with(2, "a slab has no picture", *slab, "--renderer", "reference", "-o", "x.png")
         self.fail_with(2, "expected --report FILE.json", *slab, "--renderer", "reference")
+        for flag, value in (("--metar", CUMULUS[1]), ("--at", "60"), ("--theme", "thesis-few"), ("--look", "0,10"), ("--size", "64x36"),
+                            ("--projection", "fisheye"), ("--quality", "low"), ("--exposure", "15"), ("--droplets", "mie")):
+            self.fail_with(2, flag + " is for pictures of skies", *slab, "--renderer", "reference", "--report", "r.json", flag, value)
         self.fail_with(2, "--noise: expected a number", *slab, "--renderer", "reference", "--noise", "0")
         self.write("slab.toml", STEPS.replace("[slab]", "[slab]\noptical_depth = 1"))
         self.fail_with(1, "slab has an optical_depth and columns", *slab, "--renderer", "reference", "--report", "r.json")

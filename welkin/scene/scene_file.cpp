@@ -108,6 +108,23 @@ void validateTable(const T& group, const toml::table& root, std::string_view key
   }
 }
 
+// A slab stands in the place of the whole sky: what describes that would be without effect.
+void refuseSky(const Scene& scene, const toml::table& root, const std::string& name) {
+  const auto refuse = [&](bool refused, std::string_view key, const std::string& called) {
+    const toml::node* node = root.get(key);
+    if (refused && node != nullptr)
+      throw errorAt(*node, name, called + " has no effect beside a slab; expected one of the two");
+  };
+  refuse(true, "metar", "metar");
+  refuse(true, "theme", "theme");
+  refuse(!scene.layers.empty(), "layer", "[[layer]]");
+  refuse(!scene.sheets.empty(), "sheet", "[[sheet]]");
+  refuse(!scene.metaballs.empty(), "metaballs", "[[metaballs]]");
+  // With their defaults, as `welkin info` prints them, they ask for nothing.
+  refuse(scene.camera != Camera{}, "camera", "[camera]");
+  refuse(scene.skyBox != SkyBox{}, "sky_box", "[sky_box]");
+}
+
 // At the key of [slab] that the message begins with, or at what makes a slab of it.
 void validateSlab(const Scene& scene, const toml::table& root, const std::string& name) {
   try {
@@ -118,7 +135,8 @@ void validateSlab(const Scene& scene, const toml::table& root, const std::string
     if (at == nullptr) at = root.get(scene.slab.opticalDepth ? "slab" : "slab_column");
     throw errorAt(*at, name, e.what());
   }
-  if (scene.slab.empty() && scene.slab != Slab{})
+  if (!scene.slab.empty()) return refuseSky(scene, root, name);
+  if (scene.slab != Slab{})
     throw errorAt(*root.get("slab"), name,
                   "slab has no optical_depth; expected one, or columns: [[slab_column]]");
 }

@@ -253,6 +253,10 @@ TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
          "droplet_diameter_um is 45; expected at most 40 um with phase mie");
   expect("seed = 2\n[slab]\nthickness_m = 300\n", "2:1",
          "slab has no optical_depth; expected one, or columns");
+  for (const char* sky :
+       {"[[layer]]\n", "[[sheet]]\n", "[camera]\npitch_deg = 1\n", "[sky_box]\nturn_deg = 1\n"})
+    expect("[slab]\noptical_depth = 2\n" + std::string(sky), "3:1", "has no effect beside a slab");
+  expect("theme = \"thesis-few\"\n[[slab_column]]\n", "1:9", "theme has no effect beside a slab");
   expect("[[slab_column]]\n[slab]\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23", "at most 40");
   expect("seed = 2\nmetar = \"LSZH 211220Z 24008KT Q10\"\n", "2:9", "metar: column 22 of the report: 'Q10'");
   expect("metar = \"LSZH 211220Z NIL\"\n", "1:9", "NIL");
