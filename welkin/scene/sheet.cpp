@@ -54,7 +54,8 @@ void describe(Sheet& s, ParamVisitor& v) {
           s.texture);
   v.value({"tile_m", "m", "after which the pattern repeats", 100, 500000}, s.tileM);
   v.value({"offset", "", "of the pattern, tiles east, north and, in a dome, up", -1000, 1000}, s.offset);
-  v.value({"texels", "", "of the pattern, a side; a dome has at most 256", 16, 4096}, s.texels);
+  v.value({"texels", "", "of the pattern, a side; a dome has at most 256, and 128 unless told", 16, 4096},
+          s.texels);
   v.value({"frequency", "", "cells of the first octave in a tile", 1, 512}, s.frequency);
   v.value({"octaves", "", "of the pattern", 1, 16}, s.octaves);
   v.value({"amplitude", "", "of the first octave", 0.01, 4}, s.amplitude);

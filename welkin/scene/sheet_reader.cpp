@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/scene/sheet_reader.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 namespace welkin::scene {
+namespace {
+
+constexpr std::int64_t kDomeTexels = 128;  // unless told; a volume has them in three directions
+
+}  // namespace
 
 std::string besideFile(const std::string& name, const std::string& path) {
   return (std::filesystem::path(name).parent_path() / path).string();  // an absolute path stays what it is
@@ -27,6 +33,9 @@ std::vector<Sheet> startingSheets(const toml::table& root, const std::string& na
       // The one takes the other's place, unless the file gives both.
       if (table->contains("exponent")) sheet.density.reset();
     }
+    const auto surface = table ? (*table)["surface"].value<std::string>() : std::nullopt;
+    if (surface == kEnumNames<SheetSurface>[static_cast<std::size_t>(SheetSurface::kDome)])
+      sheet.texels = std::min(sheet.texels, kDomeTexels);
     sheets.push_back(std::move(sheet));
   }
   return sheets;

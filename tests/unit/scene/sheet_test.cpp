@@ -142,6 +142,16 @@ TEST(Sheet, IsReadFromSceneFiles) {
   EXPECT_EQ(parseScene(sceneToToml(s), "again.toml").scene, s);
   EXPECT_THROW(parseScene("[[sheet]]\nheigth_m = 900\n", "t.toml"), ParseError);
   EXPECT_THROW(parseScene("[[sheet]]\nsurface = \"dome\"\ntexels = 512\n", "t.toml"), ParseError);
+  for (const char* keys : {"", "preset = \"thesis-few\"\n", "texture = \"volume.dds\"\n"})
+    EXPECT_EQ(
+        parseScene("[[sheet]]\nsurface = \"dome\"\n" + std::string(keys), "t.toml").scene.sheets.at(0).texels,
+        128);
+  try {
+    parseScene("[[sheet]]\nsurface = \"dome\"\npattern = \"octaves\"\n", "t.toml");
+    ADD_FAILURE() << "living octaves on a dome";
+  } catch (const ParseError& e) {
+    EXPECT_NE(std::string(e.what()).find("a dome needs a volume of noise"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
