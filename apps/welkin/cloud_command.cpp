@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "stopwatch.h"
 #include "texel_flags.h"
 #include "texel_output.h"
+#include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/field/cloud_map.h"
 #include "welkin/field/cumulus_tower.h"
@@ -28,9 +30,18 @@ namespace welkin::app {
 // Everything that has a flag.
 struct CloudRequest {
   field::CloudMapParams map;
+  double lowM = 0.0;  // height of the base of the box; 0 but for metaballs
   field::Ellipsoid ellipsoid;
   field::CumulusParams tower;
 };
+
+namespace {
+
+glm::dvec3 firstVoxelM(const CloudRequest& r) {
+  return field::firstVoxelM(r.map) + glm::dvec3(0.0, 0.0, r.lowM);
+}
+
+}  // namespace
 
 void describe(CloudRequest& r, ParamVisitor& v) {
   describe(r.map, v);
@@ -89,7 +100,8 @@ std::vector<field::Ellipsoid> ellipsoidsOf(const CloudArgs& args, CloudRequest& 
   return ellipsoids;
 }
 
-// The balls of a file, drawn into voxels.
+// The balls of a file, drawn into voxels. Unless its size is given the box holds them all, those below height
+// 0 too.
 Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
   if (args.cumulus || args.ellipsoids)
     throw UsageError("--metaballs, --cumulus and --ellipsoids: expected one of them");
@@ -99,20 +111,29 @@ Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
           "cloud: of all that shapes a cloud, only --size, --voxel and --dynamics go with --metaballs");
   applyTexts(r, args.params, cloudParamFlags());
   std::vector<field::Metaball> balls = scene::readMetaballs(*args.metaballs).levels.back().balls;
-  std::vector<field::Ellipsoid> box;
-  for (field::Metaball& b : balls) {
-    b.density *= r.map.dynamics;
-    box.push_back({b.centreM, glm::dvec3(b.radiusM), glm::dvec3(0.0)});
-  }
-  if (args.size)
+  for (field::Metaball& b : balls) b.density *= r.map.dynamics;
+  if (args.size) {
     applySize(*args.size, r.map);
-  else
+  } else {
+    const double below = field::boundsOf(balls).low.z / r.map.voxelM;
+    r.lowM = std::min(std::floor(below), 0.0) * r.map.voxelM;
+    std::vector<field::Ellipsoid> box;
+    for (const field::Metaball& b : balls)
+      box.push_back({b.centreM - glm::dvec3(0.0, 0.0, r.lowM), glm::dvec3(b.radiusM), glm::dvec3(0.0)});
     field::fitBox(r.map, box);
+  }
   validateMap(r.map);
-  Volume<float> map = field::rasterise(
-      balls, {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny), static_cast<int>(r.map.nz),
-              glm::dvec3(r.map.voxelM), field::firstVoxelM(r.map)});
-  for (float& v : map.data) v = std::max(v, 0.0f);
+  Volume<float> map =
+      field::rasterise(balls, {static_cast<int>(r.map.nx), static_cast<int>(r.map.ny),
+                               static_cast<int>(r.map.nz), glm::dvec3(r.map.voxelM), firstVoxelM(r)});
+  bool empty = true;
+  for (float& v : map.data) {
+    v = std::max(v, 0.0f);
+    empty = empty && v == 0.0f;
+  }
+  if (empty)
+    throw ParameterError(*args.metaballs +
+                         ": the cloud is empty: the sum of the balls is above 0 at no voxel's centre");
   return map;
 }
 
@@ -150,7 +171,7 @@ TexelSource sourceOf(const CloudArgs& args, const CloudRequest& r) {
   for (const Flag& input : {args.ellipsoids, args.metaballs})
     if (input) s.inputs.push_back(*input);
   s.notes.voxelSizeM = glm::dvec3(r.map.voxelM);
-  s.notes.firstVoxelM = field::firstVoxelM(r.map);
+  s.notes.firstVoxelM = firstVoxelM(r);
   s.notes.name = "density";
   s.notes.metadata = {{"Software", "welkin " WELKIN_VERSION},
                       {"welkin_cloud", dumped(cloudJson(args, r), -1)}};
