@@ -165,7 +165,8 @@ TexelSource sourceOf(const CloudArgs& args, const CloudRequest& r) {
   s.volume = true;
   s.northUp = true;
   s.measures = true;
-  s.format = fileKindOf(s.command, *args.output.out) == io::TexelFileKind::kDds
+  s.format = fileKindOf(s.command, *args.output.out, ".vdb, .raw, .dds, or .json with --cumulus") ==
+                     io::TexelFileKind::kDds
                  ? io::TexelFormat{io::Channels::kA, io::ValueType::kUnorm8}
                  : io::TexelFormat{io::Channels::kR, io::ValueType::kFloat};
   for (const Flag& input : {args.ellipsoids, args.metaballs})

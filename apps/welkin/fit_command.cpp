@@ -57,7 +57,7 @@ void checkFlags(const FitArgs& args) {
   if (!args.balls && !args.resume) throw UsageError("fit: expected --balls K, how many");
   if (!args.out->ends_with(".json"))
     throw UsageError("fit: " + *args.out + " is no .json; expected a name such as cloud.json");
-  fileKindOf("fit", args.map);
+  fileKindOf("fit", args.map, kVolumeFile);
   // Balls may take the place of those that they went on from.
   CallFiles files;
   files.readsTexels(args.map);

@@ -169,9 +169,7 @@ void setOutput(RenderSettings& r, const std::string& out) {
   try {
     r.format = io::imageFormatOf(out);
   } catch (const ParameterError&) {
-    const std::string extension = std::filesystem::path(out).extension().string();
-    throw UsageError(out + ": " + (extension.empty() ? "no extension" : "unknown extension " + extension) +
-                     "; expected .png, .exr, .hdr, .mp4 or .webm");
+    throw UsageError(wrongKind(out, ".png, .exr, .hdr, .mp4 or .webm"));
   }
 }
 

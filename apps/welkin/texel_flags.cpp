@@ -72,11 +72,11 @@ io::DdsOptions ddsOptions(const std::string& command, const TexelFileFlags& flag
   return dds;
 }
 
-io::TexelFileKind fileKindOf(const std::string& command, const std::string& path) {
+io::TexelFileKind fileKindOf(const std::string& command, const std::string& path, const char* expected) {
   try {
     return io::texelFileKindOf(path);
-  } catch (const ParameterError& e) {
-    throw UsageError(command + ": " + e.what());
+  } catch (const ParameterError&) {
+    throw UsageError(command + ": " + wrongKind(path, expected));
   }
 }
 
@@ -105,7 +105,7 @@ io::TexelFormat formatFor(const OutputArgs& args, io::TexelFileKind kind, io::Te
   if (nearest) expected = "--format " + io::nameOf(*nearest);
   if (kind == io::TexelFileKind::kVdb && !shape.volume) expected = "a size of three numbers";
   const bool pictures = kind == io::TexelFileKind::kPng || kind == io::TexelFileKind::kExr;
-  if (pictures && shape.volume) expected = io::countOf(natural) == 1 ? ".dds, .raw or .vdb" : ".dds or .raw";
+  if (pictures && shape.volume) expected = io::countOf(natural) == 1 ? kVolumeFile : ".dds or .raw";
   throw UsageError(*args.out + " cannot hold a " + (shape.volume ? "volume of " : "picture of ") +
                    io::nameOf(asked) + "; expected " + expected);
 }

@@ -19,8 +19,11 @@ bool isVolume(const std::string& text);  // whether such a text has three number
 io::DdsOptions ddsOptions(const std::string& command, const TexelFileFlags& flags, io::TexelFileKind kind,
                           io::MipEdges edges);
 
-// Of an output's name. Throws UsageError.
-io::TexelFileKind fileKindOf(const std::string& command, const std::string& path);
+// Of a file's name. `expected`: the kinds that the command takes, for the message. Throws UsageError.
+inline constexpr const char* kAnyTexelFile = ".png, .exr, .hdr, .dds, .raw or .vdb";
+inline constexpr const char* kVolumeFile = ".dds, .raw or .vdb";
+io::TexelFileKind fileKindOf(const std::string& command, const std::string& path,
+                             const char* expected = kAnyTexelFile);
 
 // --format, or `usual` where it is not given: for one value a texel by the name that the kind of file has for
 // it. shape.format.channels says how many channels there are to be held.

@@ -15,6 +15,9 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+// What is wrong with the name of a file whose extension says no kind of file that will do.
+std::string wrongKind(const std::string& path, const std::string& expected);
+
 // "; did you mean NAME?" with the nearest of the names, "" where none is near.
 std::string didYouMean(const std::string& word, const std::vector<std::string>& names);
 

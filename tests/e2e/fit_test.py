@@ -140,6 +140,10 @@ class Fit(ProgramTest):
         self.fail_with(2, "expected one of them", "cloud", "--metaballs", "x.json", "--cumulus", "-o", "w.raw")
         self.fail_with(1, "none.json: cannot be opened", "cloud", "--metaballs", "none.json", "-o", "w.raw")
 
+    def test_kinds_of_files(self):
+        self.fail_with(2, "x.foo: unknown extension .foo; expected .vdb, .raw, .dds, or .json with --cumulus", "cloud", "-o", "x.foo")
+        self.fail_with(2, "fit: m.foo: unknown extension .foo; expected .dds, .raw or .vdb", "fit", "m.foo", "--balls", "3", "-o", "x.json")
+
     def test_wrong_calls(self):
         for args, message in (((), "expected -o OUT.json"), (("-o", "x.json"), "expected --balls K"),
                               (("-o", "x.vdb", "--balls", "3"), "x.vdb is no .json"),
