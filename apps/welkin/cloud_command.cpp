@@ -236,7 +236,13 @@ int growMetaballs(const CloudArgs& args) {
 }  // namespace
 
 std::vector<scene::ParamDoc> cloudParamDocs() {
-  return scene::documentParams<CloudRequest>();
+  std::vector<scene::ParamDoc> rows = scene::documentParams<CloudRequest>();
+  // They follow from the box.
+  for (scene::ParamDoc& row : rows) {
+    if (row.path == "ellipsoid.centre_m") row.defaultValue = "the middle of the box";
+    if (row.path == "ellipsoid.radii_m") row.defaultValue = "95 % of the box's";
+  }
+  return rows;
 }
 
 std::vector<ParamFlag> cloudParamFlags() {

@@ -297,6 +297,12 @@ class Cloud(ProgramTest):
         self.assertGreater(texels[(31 * 40 + 20) * 40 + 20], 0)
         self.assertEqual(texels[(20 * 40 + 20) * 40 + 27], 0)
 
+    def test_help_knows_that_the_ellipsoid_fills_the_box(self):
+        text = " ".join(self.succeed("cloud", "--help").split())
+        self.assertIn("default the middle of the box)", text)
+        self.assertIn("default 95 % of the box's)", text)
+        self.assertNotIn("[100, 100, 100]", text)
+
     def test_many_from_a_file(self):
         self.write("e.toml", "".join(f"[[ellipsoid]]\ncentre_m = [{x}, 0, 100]\nradii_m = [90, 90, 90]\n" for x in (-200, 200)))
         r = self.report("--ellipsoids", "e.toml", "--octaves", "0", "-o", "x.raw", "--voxel", "10")
