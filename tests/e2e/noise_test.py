@@ -331,6 +331,7 @@ class Cloud(ProgramTest):
         self.fail_with(2, "go with --cumulus", "cloud", "-o", "x.raw", "--width", "100")
         self.fail_with(2, "not with --cumulus", "cloud", "-o", "x.raw", "--cumulus", "--radii", "1,1,1")
         self.fail_with(2, "x.png cannot hold a volume", "cloud", "-o", "x.png")
+        self.fail_with(2, "x.vdb cannot hold r8; expected --format r16f or r32f", "cloud", "-o", "x.vdb", "--format", "r8")
         self.fail_with(2, "did you mean --cumulus?", "cloud", "-o", "x.raw", "--cumulis")
         self.write("one.toml", "[[ellipsoid]]\nradii_m = [100, 100, 100]\n")
         self.fail_with(2, "--report: ./one.toml is read", "cloud", "-o", "x.raw", "--ellipsoids", "one.toml", "--report", "./one.toml")
