@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "report.h"
 #include "usage_error.h"
 #include "welkin/io/file_extension.h"
 #include "welkin/io/texel_file.h"
@@ -97,8 +98,9 @@ Json texelsJson(const std::string& path) {
   if (kind == TexelFileKind::kVdb) return vdbJson(path);
   const io::Texels texels = io::readTexels(path);
   Json j = shapeJson(kind, texels.shape);
-  if (kind == TexelFileKind::kPng) j["meaning"] = "sRGB";
-  if (kind == TexelFileKind::kExr || kind == TexelFileKind::kHdr) j["meaning"] = "linear Rec. 709, cd/m2";
+  // The kind of file alone does not say it.
+  if (const auto meaning = texels.notes.metadata.find(kMeaningKey); meaning != texels.notes.metadata.end())
+    j["meaning"] = meaning->second;
   if (kind == TexelFileKind::kDds) {
     const io::DdsInfo dds = io::readDdsInfo(path);
     j["layout"] = dds.layout;

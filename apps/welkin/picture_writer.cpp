@@ -36,7 +36,7 @@ std::string PictureWriter::write(std::int64_t frame, const Image<float>& luminan
     return {};
   }
   const std::string path = pattern_ ? pattern_->path(frame) : settings_.out;
-  const io::WriteOptions options{settings_.pngBits, pictureMetadata(state, exposureEv)};
+  const io::WriteOptions options{settings_.pngBits, pictureMetadata(state, exposureEv, settings_.format)};
   if (io::holdsLuminance(settings_.format))
     io::writeImage(path, luminance, options);
   else

@@ -125,7 +125,7 @@ void writePicture(const RenderSettings& settings, const reference::SkyFilm& film
   file.planes["error"] = film.error().data;
   constexpr float kLargestHalf = 65504.0f;
   file.half = std::ranges::all_of(luminance.data, [](float x) { return x <= kLargestHalf; });
-  file.metadata = pictureMetadata(state, exposureEv);
+  file.metadata = pictureMetadata(state, exposureEv, settings.format);
   file.metadata["welkin_samples"] = std::to_string(film.samples());
   io::writeExrPlanes(settings.out, file);
 }

@@ -132,10 +132,12 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::map<std::string, std::string> pictureMetadata(const scene::SkyState& s, double exposureEv) {
+std::map<std::string, std::string> pictureMetadata(const scene::SkyState& s, double exposureEv,
+                                                   io::ImageFormat format) {
   const scene::Place& p = s.scene.place;
   std::map<std::string, std::string> m{
       {"Software", "welkin " WELKIN_VERSION},
+      {kMeaningKey, io::holdsLuminance(format) ? "linear Rec. 709, cd/m2" : "sRGB"},
       {"welkin_time", formatUtcTime(s.time)},
       {"welkin_place",
        numberText(p.latitudeDeg) + "," + numberText(p.longitudeDeg) + "," + numberText(p.altitudeM)},

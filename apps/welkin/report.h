@@ -44,7 +44,9 @@ struct RenderReport {
 std::string reportJson(const RenderSettings& settings, const RenderReport& report);
 
 // What a picture file says about itself: key and text.
-std::map<std::string, std::string> pictureMetadata(const scene::SkyState& state, double exposureEv);
+std::map<std::string, std::string> pictureMetadata(const scene::SkyState& state, double exposureEv,
+                                                   io::ImageFormat format);
+inline constexpr const char* kMeaningKey = "welkin_meaning";  // of what the values mean
 
 // The most memory that this process has held so far.
 double peakRssMib();

@@ -24,6 +24,12 @@ class Convert(ProgramTest):
         side = {"version": 1, "size": size, "channels": channels, "type": kind, "byte_order": "little", **more}
         self.write(path + ".json", json.dumps(side))
 
+    def test_no_meaning_that_the_file_does_not_say(self):
+        self.write_raw("a.raw", [2, 1], "rgb", "float32", [0, 0.25, 0.5, 1, 0, 1])
+        for name, how in (("a.exr", []), ("a.hdr", []), ("a.png", ["--format", "rgb8"])):
+            self.succeed("convert", "a.raw", name, *how)
+            self.assertNotIn("meaning", self.info(name))
+
     def test_volume_goes_round_every_kind(self):
         values = [(37 * i) % 251 for i in range(6 * 5 * 4)]
         self.write_raw("a.raw", [6, 5, 4], "l", "uint8", values, voxel_size_m=[20, 20, 10], first_voxel_m=[1, 2, 3],

@@ -64,6 +64,7 @@ class Stills(ProgramTest):
         self.assertEqual((info["width"], info["height"], info["channels"]), (96, 54, 3))
         self.assertGreater(info["mean"], 500)  # cd/m2 at noon
         self.assertGreaterEqual(info["min"], 0)
+        self.assertEqual(info["meaning"], "linear Rec. 709, cd/m2")
         self.assertEqual(info["metadata"]["welkin_time"], r["time"])
         self.assertEqual(info["metadata"]["welkin_metar"], r["metar"])
 
