@@ -312,7 +312,8 @@ bool Reader::readBroken(const Group& g) {
   if (!next) return false;
   const std::string_view t = g.text, n = next.text;
   const bool wind = t.size() >= 5 && isDigits(t.substr(0, 5)) && (n == "KT" || n == "MPS" || n == "KMH");
-  const bool miles = isDigits(t) && t.size() <= 2 && n.ends_with("SM");
+  const bool miles = (isDigits(t) && t.size() <= 2 && n.ends_with("SM")) ||
+                     (n == "SM" && readVisibilityMiles(std::string(t) + "SM", std::nullopt));
   const bool weather = (t == "VC" || t == "-" || t == "+") && isPresentWeather(n);
   const bool cloud = (t == "FEW" || t == "SCT" || t == "BKN" || t == "OVC" || t == "VV") && n.size() >= 3 &&
                      (isDigits(n.substr(0, 3)) || n.starts_with("///"));

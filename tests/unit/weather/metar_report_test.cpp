@@ -68,6 +68,12 @@ TEST(MetarReport, TornGroupsAreNotReadInHalves) {
   const auto miles = parseMetar("KLFI 230042Z 05010KT 1 6SM BR CLR 14/13 A3020");
   EXPECT_FALSE(miles.metar.visibilityM);
   EXPECT_EQ(miles.errors.size(), 1u);
+  for (const char* half : {"1/2", "M1/4", "P6"}) {
+    const auto torn = parseMetar("KJFK 211551Z 22005KT " + std::string(half) + " SM BKN010 12/11 A2990");
+    ASSERT_EQ(torn.errors.size(), 1u) << half;
+    EXPECT_NE(torn.errors[0].reason.find("' has a blank too many"), std::string::npos) << half;
+    EXPECT_FALSE(torn.metar.visibilityM);
+  }
   const auto vicinity = parseMetar("MMPS 262042Z 24006KT 10SM VC RA BKN010CB OVC070 29/25 A2992");
   EXPECT_TRUE(vicinity.metar.weather.empty());
   EXPECT_EQ(vicinity.metar.layers.size(), 2u);
