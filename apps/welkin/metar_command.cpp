@@ -83,7 +83,9 @@ Json decoded(const Metar& m) {
   j["wind"] = {{"direction_deg", orNull(m.wind.directionDeg)},
                {"variable", m.wind.variable},
                {"speed_mps", orNull(m.wind.speedMps)},
-               {"gust_mps", orNull(m.wind.gustMps)}};
+               {"gust_mps", orNull(m.wind.gustMps)},
+               {"varies_from_deg", orNull(m.wind.variesFromDeg)},
+               {"varies_to_deg", orNull(m.wind.variesToDeg)}};
   j["visibility_m"] = orNull(m.visibilityM);
   j["cavok"] = m.cavok;
   j["layers"] = Json::array();
@@ -104,6 +106,9 @@ Json decoded(const Metar& m) {
                                                                        : Json(nullptr);
   j["sky_obscured"] = m.skyObscured;
   j["nil"] = m.nil;
+  j["special"] = m.special;
+  j["corrected"] = m.corrected;
+  j["delayed"] = m.delayed;
   return j;
 }
 
@@ -119,7 +124,13 @@ std::string windText(const weather::MetarWind& w) {
                                    : "direction missing";
   s += fmt::format(", {}{:.1f} m/s", w.speedAtLeast ? "at least " : "", *w.speedMps);
   if (w.gustMps) s += fmt::format(", gusts {:.1f} m/s", *w.gustMps);
+  if (w.variesFromDeg && w.variesToDeg)
+    s += fmt::format(", between {} and {} degrees", *w.variesFromDeg, *w.variesToDeg);
   return s;
+}
+
+std::string degreesText(const std::optional<double>& c) {
+  return c ? fmt::format("{:.1f} C", *c) : "missing";
 }
 
 std::string visibilityText(const Metar& m) {
@@ -177,8 +188,10 @@ std::string metarToText(const MetarResult& r) {
   if (!m.station.empty() || m.day) {
     s += m.station.empty() ? "station missing" : m.station;
     if (m.day) s += fmt::format(", day {} at {:02}:{:02} UTC", *m.day, *m.hour, *m.minute);
+    if (m.special) s += ", special";
     if (m.automatic) s += ", automatic";
     if (m.corrected) s += ", corrected";
+    if (m.delayed) s += ", delayed";
     s += m.nil ? ": no report\n" : "\n";
   }
   if (!s.empty() && !m.nil) {
@@ -190,9 +203,9 @@ std::string metarToText(const MetarResult& r) {
       s += "\n";
     }
     s += "  sky           " + skyText(m) + "\n";
-    if (m.temperatureC) s += fmt::format("  temperature   {:.1f} C", *m.temperatureC);
-    if (m.temperatureC && m.dewPointC) s += fmt::format(", dew point {:.1f} C", *m.dewPointC);
-    if (m.temperatureC) s += "\n";
+    if (m.temperatureC || m.dewPointC)
+      s += "  temperature   " + degreesText(m.temperatureC) +
+           (m.dewPointC ? ", dew point " + degreesText(m.dewPointC) : "") + "\n";
     if (m.pressureHpa) s += fmt::format("  pressure      {:.1f} hPa\n", *m.pressureHpa);
   }
   for (const auto& e : r.errors) s += fmt::format("  error         column {}: {}\n", e.column, e.reason);

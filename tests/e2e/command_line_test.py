@@ -84,6 +84,16 @@ class Metar(ProgramTest):
         for key in ("visibility_m", "cavok", "clear", "vertical_visibility_ft", "weather", "temperature_c", "dewpoint_c"):
             self.assertIn(key, j)
 
+    def test_all_that_was_decoded(self):
+        report = "SPECI KMRY 211753Z AUTO CCA 28010KT 250V310 M1/4SM BKN002 12/11 A2992"
+        j = json.loads(self.succeed("metar", "--json", report))
+        self.assertEqual((j["special"], j["corrected"], j["delayed"], j["visibility_bound"]), (True, True, False, "<"))
+        self.assertEqual((j["wind"]["varies_from_deg"], j["wind"]["varies_to_deg"]), (250, 310))
+        text = self.succeed("metar", report)
+        self.assertIn("special, automatic, corrected\n", text)
+        self.assertIn(", between 250 and 310 degrees\n", text)
+        self.assertIn("missing, dew point 11.0 C\n", self.succeed("metar", "LSZH 211220Z 24008KT 9999 FEW020 ///11 Q1018"))
+
     def test_several_and_from_a_file(self):
         self.write("reports.txt", self.REPORT + "\n\n" + "LSZH 211220Z 24008KT CAVOK 22/12 Q1018\n")
         lines = self.succeed("metar", "--json", "--file", "reports.txt").splitlines()
