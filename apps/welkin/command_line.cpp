@@ -254,6 +254,13 @@ std::vector<std::string> flagNames(const CLI::App* app) {
   return names;
 }
 
+std::vector<std::string> commandNames(const CLI::App* root) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : root->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
+  return names;
+}
+
 // CLI11 collects what it does not know (allow_extras); the first such word is the mistake to report.
 void refuseExtras(const CLI::App* app, const std::string& command) {
   const std::vector<std::string> extras = app->remaining();
@@ -265,10 +272,7 @@ void refuseExtras(const CLI::App* app, const std::string& command) {
     throw UsageError(where + "unknown flag " + flag + didYouMean(flag, flagNames(app)));
   }
   if (!command.empty()) throw UsageError(where + "unexpected \"" + word + "\"");
-  std::vector<std::string> commands;
-  for (const CLI::App* sub : app->get_subcommands([](const CLI::App*) { return true; }))
-    commands.push_back(sub->get_name());
-  const std::string hint = didYouMean(word, commands);
+  const std::string hint = didYouMean(word, commandNames(app));
   throw UsageError("unknown command \"" + word + "\"" + (hint.empty() ? "; welkin --help lists them" : hint));
 }
 
@@ -370,11 +374,11 @@ Command parseCommandLine(int argc, const char* const* argv) {
 
   const auto chosen = root.get_subcommands();
   refuseExtras(&root, "");
-  if (chosen.empty())
-    throw UsageError(
-        "expected a command: render, metar, sun, info, noise, cloud, fit, convert, bench or help; welkin "
-        "--help "
-        "explains them");
+  if (chosen.empty()) {
+    std::string list;
+    for (const std::string& name : commandNames(&root)) list += (list.empty() ? "" : ", ") + name;
+    throw UsageError("expected a command: " + list + "; welkin --help explains them");
+  }
   refuseExtras(chosen[0], chosen[0]->get_name());
   if (chosen[0] == renderApp) return render;
   if (chosen[0] == metarApp) return metar;

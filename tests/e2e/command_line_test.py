@@ -30,7 +30,9 @@ class Help(ProgramTest):
         self.fail_with(2, "unknown flag --exposre; did you mean --exposure?", "render", "-o", "x.png", "--exposre", "auto")
         self.fail_with(2, "did you mean --version?", "--verison")
         self.fail_with(2, 'there is no topic "scnee"; did you mean scene?', "help", "scnee")
-        self.fail_with(2, "expected a command")
+        message = self.fail_with(2, "expected a command")
+        for command in ("render", "metar", "sun", "info", "noise", "cloud", "fit", "convert", "compare", "bench", "help"):
+            self.assertRegex(message, rf"[ ,]{command}[,;]")
         self.fail_with(2, "--seed", "render", "-o", "x.png", "--seed")
 
 
