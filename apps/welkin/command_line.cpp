@@ -276,6 +276,18 @@ void refuseExtras(const CLI::App* app, const std::string& command) {
   throw UsageError("unknown command \"" + word + "\"" + (hint.empty() ? "; welkin --help lists them" : hint));
 }
 
+// CLI11 says "--size: 1 required WxH missing" and "--size: At Most 1 required but received 2".
+std::string problemOf(const CLI::ArgumentMismatch& e) {
+  const std::string text = e.what(), flag = text.substr(0, text.find(':')), before = ": 1 required ",
+                    after = " missing";
+  if (text.starts_with(flag + before) && text.ends_with(after)) {
+    const std::size_t begin = flag.size() + before.size();
+    return flag + ": expected " + text.substr(begin, text.size() - after.size() - begin) + " behind it";
+  }
+  if (text.find("but received") != std::string::npos) return flag + " is given twice; expected it once";
+  return text;
+}
+
 }  // namespace
 
 Command parseCommandLine(int argc, const char* const* argv) {
@@ -368,6 +380,8 @@ Command parseCommandLine(int argc, const char* const* argv) {
     return PrintText{root.help()};
   } catch (const CLI::CallForVersion&) {
     return PrintText{"welkin " WELKIN_VERSION "\n"};
+  } catch (const CLI::ArgumentMismatch& e) {
+    throw UsageError(problemOf(e));
   } catch (const CLI::ParseError& e) {
     throw UsageError(e.what());
   }

@@ -33,7 +33,9 @@ class Help(ProgramTest):
         message = self.fail_with(2, "expected a command")
         for command in ("render", "metar", "sun", "info", "noise", "cloud", "fit", "convert", "compare", "bench", "help"):
             self.assertRegex(message, rf"[ ,]{command}[,;]")
-        self.fail_with(2, "--seed", "render", "-o", "x.png", "--seed")
+        self.fail_with(2, "--seed: expected N behind it\n", "render", "-o", "x.png", "--seed")
+        self.fail_with(2, "--size: expected WxH behind it\n", "render", "--size")
+        self.fail_with(2, "--seed is given twice; expected it once\n", "render", "-o", "x.png", "--seed", "1", "--seed", "2")
 
 
 class Bench(ProgramTest):
