@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "bench_command.h"
 #include "cloud_command.h"
@@ -86,10 +87,11 @@ int fail(int code, const char* message) {
 }
 
 int runProgram(int argc, const char* const* argv) {
+  constexpr const char* kNoOutput = "standard output cannot be written";
   try {
     const Command command = parseCommandLine(argc, argv);
     const int code = std::visit([](const auto& args) { return run(args); }, command);
-    if (std::fflush(stdout) != 0) return fail(1, "standard output cannot be written");
+    if (std::fflush(stdout) != 0) return fail(1, kNoOutput);
     return code;
   } catch (const UsageError& e) {
     return fail(2, e.what());
@@ -97,6 +99,8 @@ int runProgram(int argc, const char* const* argv) {
     return fail(130, "interrupted");
   } catch (const std::bad_alloc&) {
     return fail(1, "out of memory");
+  } catch (const std::system_error& e) {
+    return fail(1, std::ferror(stdout) != 0 ? kNoOutput : e.what());
   } catch (const std::exception& e) {
     return fail(1, e.what());
   }

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands that draw nothing: version, help, metar, sun, info."""
 import json
+import subprocess
 
-from welkin_program import ProgramTest, main
+from welkin_program import PROGRAM, ProgramTest, main
 
 
 class Help(ProgramTest):
@@ -36,6 +37,13 @@ class Help(ProgramTest):
         self.fail_with(2, "--seed: expected N behind it\n", "render", "-o", "x.png", "--seed")
         self.fail_with(2, "--size: expected WxH behind it\n", "render", "--size")
         self.fail_with(2, "--seed is given twice; expected it once\n", "render", "-o", "x.png", "--seed", "1", "--seed", "2")
+
+
+    def test_a_full_disc(self):
+        for topic in ("scene", "metar"):  # more than a buffer holds, and less
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([PROGRAM, "help", topic], stdout=full, stderr=subprocess.PIPE, timeout=60)
+            self.assertEqual((done.returncode, done.stderr), (1, b"welkin: standard output cannot be written\n"))
 
 
 class Bench(ProgramTest):
