@@ -16,6 +16,7 @@
 #include "usage_error.h"
 #include "welkin/core/units.h"
 #include "welkin/field/metaballs.h"
+#include "welkin/io/file_extension.h"
 #include "welkin/io/frame_path.h"
 #include "welkin/io/video.h"
 #include "welkin/scene/metaball_file.h"
@@ -222,7 +223,11 @@ RenderSettings renderSettings(const RenderArgs& a) {
   bool sizeGiven = a.size.has_value();
   std::optional<std::string> themeFile;
   if (a.theme && std::filesystem::path(*a.theme).extension() == ".toml") themeFile = *a.theme;
-  const bool metaballs = a.scene && std::filesystem::path(*a.scene).extension() == ".json";
+  const std::string kind = a.scene ? io::lowerExtension(*a.scene) : "";
+  const bool metaballs = kind == ".json";
+  // Without an extension it may be a pipe.
+  if (!metaballs && !kind.empty() && kind != ".toml")
+    throw UsageError(*a.scene + " is no scene; expected a scene file .toml, or metaballs .json");
   if (metaballs) {
     if (a.theme) scene::apply(themeOfFlag(*a.theme), r.scene);
     r.scene.metaballs.push_back({.file = *a.scene});

@@ -40,6 +40,10 @@ class SceneFiles(ProgramTest):
     def test_reports(self):
         self.refuse('seed = 2\nmetar = "LSZH 211220Z Q10"\n', "2:9: metar: column 14 of the report: 'Q10' is not")
 
+    def test_what_is_no_scene(self):
+        (self.folder / "map.vdb").write_bytes(b" BDV\xe0\xff")
+        self.fail_with(2, "map.vdb is no scene; expected a scene file .toml, or metaballs .json", "render", "map.vdb", "-o", "x.png")
+
     def test_missing_and_folder(self):
         self.fail_with(1, "none.toml: cannot be opened: No such file", "render", "none.toml", "-o", "x.png")
         os.mkdir(self.folder / "dir.toml")
