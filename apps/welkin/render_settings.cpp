@@ -283,6 +283,9 @@ RenderSettings renderSettings(const RenderArgs& a) {
     throw UsageError(
         r.out + ": " + std::to_string(s.output.frames) +
         " frames need a place for their number; expected a name such as name_%04d.png, or a video");
+  if (s.output.frames == 1 && !r.video && (a.fps || a.speed))
+    throw UsageError(std::string(a.fps ? "--fps" : "--speed") +
+                     " is for sequences and videos; expected --frames as well");
   checkFiles(r, a, themeFile);
   return r;
 }

@@ -75,6 +75,10 @@ class Flags(ProgramTest):
         self.refuse("expected gpu or reference", "--renderer", "cpu")
         self.refuse("--spp belongs to the reference renderer", "--spp", "16")
 
+    def test_flags_of_sequences(self):
+        self.refuse("--fps is for sequences and videos; expected --frames as well", "--fps", "10")
+        self.refuse("--speed is for sequences and videos", "--speed", "10")
+
     def test_years(self):
         last = ("--time", "2100-12-31T23:59:59Z")
         self.refuse("the picture is of 2101-12-31T23:59:59Z; expected the years 1900 to 2100", *last, "--at", "31536000")

@@ -58,9 +58,9 @@ class Reference(ProgramTest):
         sky = ("render", "s.toml", *SMALL, "-o", "x.exr", "--resume", "state.exr", "--spp")
         self.succeed(*sky, "1")
         # What is done with the light afterwards, and how files are spelt, changes no path.
-        for flags in (("--exposure", "14"), ("--quality", "low"), ("--fps", "30"), ("--speed", "2")):
+        for flags in (("--exposure", "14"), ("--quality", "low")):
             self.succeed(*sky, "1", *flags)
-        self.write("s.toml", '[[metaballs]]\nfile = "./b.json"\n[output]\nflare = 0.01\n')
+        self.write("s.toml", '[[metaballs]]\nfile = "./b.json"\n[output]\nflare = 0.01\nfps = 30\nspeed = 2\n')
         self.succeed(*sky, "2")
         ball(401)
         self.fail_with(1, "of another scene", *sky, "3")

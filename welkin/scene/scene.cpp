@@ -31,7 +31,8 @@ void describe(Camera& c, ParamVisitor& v) {
            "projections of the whole sky",
            -360, 360},
           c.headingDeg);
-  v.value({"pitch_deg", "deg", "direction of view above the horizon", -90, 90}, c.pitchDeg);
+  v.value({"pitch_deg", "deg", "direction of view above the horizon, of a perspective picture", -90, 90},
+          c.pitchDeg);
   v.value({"fov_deg", "deg", "field of view across the width of a perspective picture", 1, 170}, c.fovDeg);
   v.choice(
       {"projection", "",

@@ -83,6 +83,8 @@ void validate(const SkyBox& b) {
   const auto given =
       std::count_if(all.begin(), all.end(), [](const auto* face) { return face->has_value(); });
   if (b.strip && given > 0) throw ParameterError("sky_box has a strip and faces; expected one or the other");
+  if (b.empty() && b != SkyBox{})
+    throw ParameterError("sky_box has neither a strip nor faces; expected one or the other");
   if (given > 0 && given < 6)
     throw ParameterError("sky_box has " + std::to_string(given) +
                          " of six faces; expected px, nx, py, ny, pz and nz, or a strip");

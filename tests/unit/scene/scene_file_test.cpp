@@ -248,13 +248,14 @@ TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
   expect("[[sheet]]\n[[sheet]]\ndensity = 0.9\nexponent = 0.1\n", "2:1", "density and exponent");
   expect("seed = 2\n[[metaballs]]\nscale = 2\n", "2:1", "metaballs have no file");
   expect("seed = 2\n[sky_box]\nstrip = \"a.png\"\npx = \"b.png\"\n", "2:1", "a strip and faces");
+  expect("seed = 2\n[sky_box]\nturn_deg = 90\n", "2:1", "sky_box has neither a strip nor faces");
   expect("[slab]\noptical_depth = 2\n[[slab_column]]\n", "1:1", "an optical_depth and columns");
   expect("[slab]\noptical_depth = 2\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23",
          "droplet_diameter_um is 45; expected at most 40 um with phase mie");
   expect("seed = 2\n[slab]\nthickness_m = 300\n", "2:1",
          "slab has no optical_depth; expected one, or columns");
   for (const char* sky :
-       {"[[layer]]\n", "[[sheet]]\n", "[camera]\npitch_deg = 1\n", "[sky_box]\nturn_deg = 1\n"})
+       {"[[layer]]\n", "[[sheet]]\n", "[camera]\npitch_deg = 1\n", "[sky_box]\nstrip = \"a.png\"\n"})
     expect("[slab]\noptical_depth = 2\n" + std::string(sky), "3:1", "has no effect beside a slab");
   expect("theme = \"thesis-few\"\n[[slab_column]]\n", "1:9", "theme has no effect beside a slab");
   expect("[[slab_column]]\n[slab]\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23", "at most 40");
