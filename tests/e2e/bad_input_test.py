@@ -40,6 +40,14 @@ class SceneFiles(ProgramTest):
     def test_reports(self):
         self.refuse('seed = 2\nmetar = "LSZH 211220Z Q10"\n', "2:9: metar: column 14 of the report: 'Q10' is not")
 
+    def test_files_that_it_names(self):
+        self.refuse('theme = "none.toml"\n', "1:9: theme: none.toml: cannot be opened: No such file")
+        self.refuse('[sky_box]\nstrip = "none.png"\n', "2:9: strip: there is no file none.png")
+        self.refuse('[sky_box]\nstrip = ""\n', "2:9: strip is empty; expected the name of a file")
+        faces = "".join(f'{face} = "{face}.png"\n' for face in ("px", "nx", "py", "ny", "pz", "nz"))
+        self.refuse("[sky_box]\n" + faces, "2:6: px: there is no file px.png")
+        self.refuse('[[metaballs]]\nscale = 2\nfile = "none.json"\n', "3:8: file: there is no file none.json")
+
     def test_what_is_no_scene(self):
         (self.folder / "map.vdb").write_bytes(b" BDV\xe0\xff")
         self.fail_with(2, "map.vdb is no scene; expected a scene file .toml, or metaballs .json", "render", "map.vdb", "-o", "x.png")

@@ -56,7 +56,26 @@ std::optional<Theme> themeIn(const toml::table& root, const std::string& name,
     return readTheme(*file);
   } catch (const ParameterError& e) {
     throw errorAt(*node, name, e.what());
+  } catch (const IoError& e) {
+    throw errorAt(*node, name, std::string("theme: ") + e.what());
   }
+}
+
+// The files that a picture cannot do without.
+void requireFiles(const toml::table& root, const std::string& name) {
+  const auto require = [&](const char* key, const toml::node* node) {
+    const auto file = node ? node->value<std::string>() : std::nullopt;
+    if (!file) return;
+    if (file->empty())
+      throw errorAt(*node, name, std::string(key) + " is empty; expected the name of a file");
+    const std::string path = besideFile(name, *file);
+    if (!std::filesystem::exists(path))
+      throw errorAt(*node, name, std::string(key) + ": there is no file " + path);
+  };
+  for (const char* key : {"strip", "px", "nx", "py", "ny", "pz", "nz"})
+    require(key, root["sky_box"][key].node());
+  if (const toml::array* clouds = root["metaballs"].as_array())
+    for (const toml::node& cloud : *clouds) require("file", cloud.as_table()->get("file"));
 }
 
 // The ranges of what the file gives are checked by now: only base and top can be at odds. The one that it
@@ -180,7 +199,10 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
 
 SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg,
                         const std::optional<std::string>& theme) {
-  return parseScene(readText(path, "a scene file"), path, latitudeDeg, theme);
+  const std::string text = readText(path, "a scene file");
+  SceneFile file = parseScene(text, path, latitudeDeg, theme);
+  requireFiles(parseToml(text, path), path);
+  return file;
 }
 
 std::vector<ParamDoc> documentSceneFile() {
