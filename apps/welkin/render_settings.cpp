@@ -150,6 +150,8 @@ void checkFiles(const RenderSettings& r, const RenderArgs& a, const std::optiona
   for (const std::string& path : scene::filesOf(r.scene)) files.readsTexels(path);
   if (!r.out.empty() && !r.numbered) files.writes("-o", r.out);
   if (!r.resume.empty()) files.writes("--resume", r.resume);
+  if (!r.resume.empty() && io::lowerExtension(r.resume) != ".exr")
+    throw UsageError("--resume: " + r.resume + " is no .exr; expected a name such as state.exr");
   if (!r.report.empty()) files.writes("--report", r.report);
   if (!r.numbered) return;
   try {

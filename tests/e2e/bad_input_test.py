@@ -81,6 +81,7 @@ class Flags(ProgramTest):
 
     def test_renderers(self):
         self.refuse("expected gpu or reference", "--renderer", "cpu")
+        self.refuse("--resume: state.png is no .exr; expected a name such as state.exr", "--renderer", "reference", "--resume", "state.png")
         self.refuse("--spp belongs to the reference renderer", "--spp", "16")
 
     def test_flags_of_sequences(self):
