@@ -28,15 +28,17 @@ struct SceneFile {
 // latitudeDeg: of the place when something else than the file decides it, for what is typical of a layer
 // there. theme: a name or path that wins over the file's `theme`. Throws IoError when the file cannot be
 // read; ParseError with file:line:column for bad TOML, an unknown key (naming the nearest known one), a value
-// of the wrong type, a value outside its range, and keys of one table that are at odds; what readTheme()
-// throws. The rest of validate() is left to the caller.
+// of the wrong type, a value outside its range, keys of one table that are at odds, and a file that it names
+// and that is not there, but for textures; what readTheme() throws. The rest of validate() is left to the
+// caller.
 //
 // Presets and themes are replaced by what they stand for, and the paths of files, which are relative to the
 // scene file, by paths from here.
 SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg = {},
                         const std::optional<std::string>& theme = {});
 
-// The same from memory; `name` stands for the file in messages, and its folder for the file's.
+// The same from memory, without a look for files but a theme's; `name` stands for the file in messages, and
+// its folder for the file's.
 SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {},
                      const std::optional<std::string>& theme = {});
 

@@ -36,7 +36,8 @@ struct SkyBox {
   bool operator==(const SkyBox&) const = default;
 };
 void describe(SkyBox& b, ParamVisitor& v);
-void validate(const SkyBox& b);  // throws ParameterError: a strip and faces, or not all faces
+void validate(
+    const SkyBox& b);  // throws ParameterError: a strip and faces, not all faces, or other keys alone
 
 // The six faces, square and of one size, three channels of linear Rec. 709 in cd/m2. The box is not empty.
 // Throws IoError that names the file.

@@ -47,7 +47,8 @@ struct Slab {
 };
 void describe(Slab& s,
               ParamVisitor& v);  // but for the columns, which are a list of their own: [[slab_column]]
-void validate(const Slab& s);    // throws ParameterError: a depth and columns, or too many columns
+// Throws ParameterError: a depth and columns, too many columns, or droplets too large for Mie's table.
+void validate(const Slab& s);
 
 }  // namespace welkin::scene
 
