@@ -97,8 +97,7 @@ io::TexelFormat formatFor(const OutputArgs& args, io::TexelFileKind kind, io::Te
   }
   const io::TexelFormat asked = shape.format;
   // A grid has only floats and halves.
-  const bool integers = asked.type == io::ValueType::kUnorm8 || asked.type == io::ValueType::kUnorm16;
-  if (kind == io::TexelFileKind::kVdb && integers)
+  if (kind == io::TexelFileKind::kVdb && io::isInteger(asked.type))
     throw UsageError(*args.out + " cannot hold " + io::nameOf(asked) + "; expected --format r16f or r32f");
   if (io::holds(kind, shape, dds)) return asked;
   // A file without a name for the one value has another; more channels only where they were not chosen.
