@@ -81,19 +81,44 @@ bool eatPair(Cursor& c, std::string_view pairs) {
   return false;
 }
 
-// Descriptors and phenomena, without what stands before them.
-bool isWeatherBody(Cursor c) {
-  bool aloneAllowed = false;  // TS and SH need no phenomenon
-  for (int i = 0; i < 2; ++i) {
-    const std::string_view word = c.rest().substr(0, 2);
-    if (!eatPair(c, kDescriptors)) break;
-    aloneAllowed = aloneAllowed || word == "TS" || word == "SH";
+// Whether one of the pairs stands in a text of pairs.
+bool holdsAny(std::string_view text, std::string_view pairs) {
+  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+    for (std::size_t k = 0; k + 1 < text.size(); k += 2)
+      if (text.substr(k, 2) == pairs.substr(i, 2)) return true;
+  return false;
+}
+
+// Descriptor and phenomena, without what stands before them, as code table 4678 has them together. FZUP is of
+// WMO-No. 49 and BLPY of FMH-1.
+bool isWeatherBody(Cursor c, bool intensity) {
+  const std::string_view word = c.rest().substr(0, 2);
+  const std::string_view descriptor = eatPair(c, kDescriptors) ? word : std::string_view();
+  const bool showers = descriptor == "TS" || descriptor == "SH";
+  const std::string_view phenomena = c.rest();
+  if (phenomena.empty()) return showers;  // which need no phenomenon
+  if (eatPair(c, kObscurationAndOther)) {
+    if (!c.done() || (intensity && !holdsAny(phenomena, "FCDSSS"))) return false;
+    if (descriptor.empty()) return true;
+    if (descriptor == "BL") return holdsAny(phenomena, "DUSAPY");
+    if (descriptor == "DR") return holdsAny(phenomena, "DUSA");
+    return phenomena == "FG" && !showers;
   }
-  if (c.done()) return aloneAllowed;
-  if (eatPair(c, kObscurationAndOther)) return c.done();
-  int phenomena = 0;
-  while (phenomena < 3 && eatPair(c, kPrecipitation)) ++phenomena;
-  return phenomena > 0 && c.done();
+  std::size_t count = 0;
+  while (count < 3 && eatPair(c, kPrecipitation)) {
+    if (holdsAny(phenomena.substr(0, 2 * count), phenomena.substr(2 * count, 2))) return false;
+    ++count;
+  }
+  if (count == 0 || !c.done()) return false;
+  if (descriptor == "FZ") return holdsAny(phenomena, "DZRAUP");
+  if (descriptor == "BL" || descriptor == "DR") return phenomena == "SN";
+  return descriptor.empty() || showers;
+}
+
+bool isMadeOfWeather(Cursor c) {
+  while (eatPair(c, kDescriptors) || eatPair(c, kPrecipitation) || eatPair(c, kObscurationAndOther)) {
+  }
+  return c.done();
 }
 
 bool eatRunway(Cursor& c) {
@@ -293,13 +318,15 @@ bool isPresentWeather(std::string_view text) {
   if (text == "//") return true;
   if (text.size() < 2 || text.size() > 11) return false;
   Cursor c(text);
-  if (!c.eat('-') && !c.eat('+')) c.eat("VC");
-  return isWeatherBody(c);
+  const bool light = c.eat('-'), intensity = light || c.eat('+');
+  if (light && c.rest() == "FC") return false;  // + makes a tornado of it
+  if (!intensity) c.eat("VC");
+  return isWeatherBody(c, intensity);
 }
 
 bool isRecentWeather(std::string_view text) {
   Cursor c(text);
-  return c.eat("RE") && (c.rest() == "//" || isWeatherBody(c));
+  return c.eat("RE") && (c.rest() == "//" || isWeatherBody(c, false));
 }
 
 bool isColourState(std::string_view text) {
@@ -490,6 +517,9 @@ std::string explainUnreadable(std::string_view shown, std::string_view text) {
     return say("is not a possible temperature and dew point such as 12/M01");
   }
   if (digitFirst) return say("is not a visibility such as 4000, 9999 or 10SM");
+  Cursor weather(text);
+  if (!weather.eat('-') && !weather.eat('+')) weather.eat("VC");
+  if (!weather.done() && isMadeOfWeather(weather)) return say("is weather that cannot be together");
   if (text.starts_with('-') || text.starts_with('+') || text.starts_with("VC")) {
     return say("is not a group of weather such as -RA, +TSRA or VCSH");
   }

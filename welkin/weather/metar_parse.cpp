@@ -459,6 +459,14 @@ void Reader::addWeather(const Group& g) {
     failCavok(g);
     return;
   }
+  const auto what = [](std::string_view text) {
+    return text.substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
+  };
+  const auto same = [&](const std::string& other) { return g.text != "//" && what(other) == what(g.text); };
+  if (std::any_of(metar().weather.begin(), metar().weather.end(), same)) {
+    failTwice(g, "group of the same weather");
+    return;
+  }
   metar().weather.emplace_back(g.text);
 }
 

@@ -143,6 +143,11 @@ TEST(MetarGroups, Weather) {
   expectAll(false, isPresentWeather,
             {"", "-", "VC", "MI", "FZ", "RARARARA", "XX", "RAX", "--RA", "RA-", "RABR", "BRRA", "NSW",
              "NOSIG", "R", "///", "+VCRA"});
+  // By code table 4678: what each descriptor goes with, what has an intensity, and nothing twice.
+  expectAll(false, isPresentWeather,
+            {"-FG", "MIRA", "SHFG", "TSBR", "RARA", "FZTSRA", "BCBR", "DRRA", "BLHZ", "FZSN", "FZBR", "+HZ",
+             "-FC", "SNRASN"});
+  expectAll(true, isPresentWeather, {"BLPY", "DRSA", "FZRASN", "-TS", "+DS", "+BLSN", "TSPL", "PLRA"});
   expectAll(true, isRecentWeather, {"RERA", "RETS", "RESHRA", "REFZRA", "RETSRAGR", "RE//", "REUP"});
   expectAll(false, isRecentWeather, {"RE", "RED", "REX", "RE/", "RE-RA"});
 }

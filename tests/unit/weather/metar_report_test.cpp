@@ -64,6 +64,15 @@ TEST(MetarReport, HeadingMistakes) {
   EXPECT_FALSE(parseMetar("KMRY 211760Z 24015KT").metar.minute);
 }
 
+TEST(MetarReport, WeatherThatCannotBe) {
+  const auto together = parseMetar("KMRY 211753Z 24015KT 9999 MIRA BKN020 12/10 Q1010");
+  ASSERT_EQ(together.errors.size(), 1u);
+  EXPECT_EQ(together.errors[0].reason, "'MIRA' is weather that cannot be together");
+  EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 RA RA BKN020 12/10 Q1010"), (Columns{30}));
+  EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 RA -RA BKN020 12/10 Q1010"), (Columns{30}));
+  EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 SN BLSN VCFG BKN020 12/10 Q1010"), (Columns{}));
+}
+
 TEST(MetarReport, TornGroupsAreNotReadInHalves) {
   const auto miles = parseMetar("KLFI 230042Z 05010KT 1 6SM BR CLR 14/13 A3020");
   EXPECT_FALSE(miles.metar.visibilityM);
