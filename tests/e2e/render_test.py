@@ -68,6 +68,13 @@ class Stills(ProgramTest):
         self.assertEqual(info["metadata"]["welkin_time"], r["time"])
         self.assertEqual(info["metadata"]["welkin_metar"], r["metar"])
 
+    def test_an_overcast_of_metaballs(self):
+        self.succeed("render", "--metar", "LSZH 211150Z 28010KT 9999 OVC015 10/05 Q1000", "--technique", "metaballs", *TINY, "-o", "a.png",
+                     "--report", "r.json")
+        r = json.loads((self.folder / "r.json").read_text())
+        self.assertGreater(r["layers"][0]["delivered_oktas"], 7.6)
+        self.assertEqual(r["notes"], [])
+
     def test_sheets_among_volumes(self):
         (self.folder / "s.toml").write_text(
             '[[layer]]\ngenus = "cumulus"\n[[layer]]\ngenus = "cirrus"\ntechnique = "skyplane"\n'

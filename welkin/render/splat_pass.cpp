@@ -33,6 +33,11 @@ struct Fineness {
 constexpr double kLeastPx = 12.0;
 constexpr int kStepPx = 4;
 constexpr Fineness kLiveFineness{64.0, 0.12, 2e6}, kStillFineness{128.0, 0.05, 12e6};
+// Clouds close about the eye are finer than their share of those cubes; when they stand so thick that the
+// texture would have more rows, all get coarser still.
+constexpr int kMostRows = 8192;
+constexpr double kCoarser = 0.8;
+constexpr int kMostTries = 16;
 constexpr PictureFineness kLivePictures{2.0, 4e5}, kStillPictures{1.0, 4e6};
 // A picture has a stack of few slices for what shades it, and its own shade by its shape.
 constexpr StackSize kShadeSize{8};
@@ -83,6 +88,16 @@ void atLeast(gpu::Texture2D& texture, std::optional<gpu::Framebuffer>& framebuff
   framebuffer.reset();
   texture = gpu::Texture2D(width, tall, {.format = format});
   framebuffer.emplace(texture);
+}
+
+const Fineness& finenessOf(SplatDetail detail) {
+  return detail == SplatDetail::kStill ? kStillFineness : kLiveFineness;
+}
+int stacksWidthOf(const Fineness& fineness) {
+  return kMostStacks * StackSize{static_cast<int>(fineness.mostPx)}.width();
+}
+double finePx(const Fineness& fineness, double share) {
+  return fineness.mostPx * std::sqrt(share / fineness.mostShare);
 }
 
 }  // namespace
@@ -146,8 +161,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
   pictures_.clear();
   wholes_.clear();
   bySize_.clear();
-  const Fineness& fineness = detail_ == SplatDetail::kStill ? kStillFineness : kLiveFineness;
-  const auto finePx = [&](double share) { return fineness.mostPx * std::sqrt(share / fineness.mostShare); };
+  const Fineness& fineness = finenessOf(detail_);
   const auto cube = [&](double px) { return std::pow(std::clamp(px, kLeastPx, fineness.mostPx), 3.0); };
   double cubes = 0.0;
   for (std::size_t i = 0; i < clouds.size(); ++i) {
@@ -187,7 +201,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     const double radiusM = 0.5 * glm::length(box->high - box->low);
     const double share = radiusM / std::max(glm::length(centreM), 1e-3);
     wholes_.push_back({centreM, radiusM});
-    cubes += static_cast<double>(1.0f - far.share) * cube(finePx(share));
+    cubes += static_cast<double>(1.0f - far.share) * cube(finePx(fineness, share));
     if (!mayBeSeen(cone, centreM, radiusM)) continue;
     Block& block = blocks_.emplace_back();
     block.cloud = static_cast<std::uint32_t>(i);
@@ -195,18 +209,29 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     block.share = static_cast<float>(share);
     bySize_.push_back(static_cast<std::uint32_t>(blocks_.size() - 1));
   }
-  const double coarser = std::cbrt(std::min(fineness.cubes / std::max(cubes, 1.0), 1.0));
+  double coarser = std::cbrt(std::min(fineness.cubes / std::max(cubes, 1.0), 1.0));
   // The largest first.
   std::sort(bySize_.begin(), bySize_.end(), [this](std::uint32_t a, std::uint32_t b) {
     return blocks_[a].share != blocks_[b].share ? blocks_[a].share > blocks_[b].share : a < b;
   });
+  int rows = placeBlocks(coarser);
+  for (int i = 0; i < kMostTries && rows > kMostRows; ++i) rows = placeBlocks(coarser *= kCoarser);
+  stacksHeight_ = std::max(rows, 1);
+  const int stacksWidth = stacksWidthOf(fineness);
+  atLeast(depths_, toDepths_, stacksWidth, stacksHeight_, gpu::Format::kRgba32F);
+}
+
+// Gives each block its texels, that part of those that its size in view asks for; returns the rows.
+int SplatPass::placeBlocks(double coarser) {
+  const Fineness& fineness = finenessOf(detail_);
   const int stacks = lights_.toSecond ? kMostStacks : kFromSecond;
-  const int stacksWidth = kMostStacks * StackSize{static_cast<int>(fineness.mostPx)}.width();
+  const int stacksWidth = stacksWidthOf(fineness);
   int row = 0, x = 0;
   StackSize last;
   for (const std::uint32_t i : bySize_) {
     Block& b = blocks_[i];
-    b.finePx = std::clamp(coarser * finePx(static_cast<double>(b.share)), kLeastPx, fineness.mostPx);
+    b.finePx =
+        std::clamp(coarser * finePx(fineness, static_cast<double>(b.share)), kLeastPx, fineness.mostPx);
     b.size.sidePx = kStepPx * static_cast<int>(std::ceil(b.finePx / kStepPx));
     if (b.size.sidePx != last.sidePx || x + stacks * b.size.width() > stacksWidth) {
       if (x > 0) row += last.height();
@@ -240,8 +265,7 @@ void SplatPass::findBlocks(std::span<const SplatCloud> clouds, const shading::Vi
     row += kShadeSize.sidePx;
     x = 0;
   }
-  const int height = stacksHeight_ = std::max(row, 1);
-  atLeast(depths_, toDepths_, stacksWidth, height, gpu::Format::kRgba32F);
+  return row;
 }
 
 // What a cloud's balls add to the slices of a stack.

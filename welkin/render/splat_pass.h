@@ -93,6 +93,7 @@ class SplatPass {
   static constexpr std::uint32_t kPicture = 1u << 31;
   gpu::Program& lightProgram() { return lightPrograms_[lights_.toSecond ? 1 : 0]; }
   void findBlocks(std::span<const SplatCloud> clouds, const shading::ViewParts& view);
+  int placeBlocks(double coarser);
   void drawStacks(std::span<const SplatCloud> clouds, const glm::dvec3& eyeM);
   void addStack(const SplatCloud& cloud, const glm::dvec3& eyeM, const glm::dmat3& axes, int beside,
                 Block& block);

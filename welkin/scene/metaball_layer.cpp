@@ -20,14 +20,14 @@ constexpr double kCellShare = 0.75;    // of the widest cloud
 constexpr double kLeastSize = 0.5;     // of the largest cloud
 constexpr double kReach = 45.0;        // widths of the widest cloud
 constexpr double kLeastReachM = 10000.0, kMostReachM = 45000.0;
-constexpr double kFarBases = 20.0;  // heights of the base, of layers that cover more
-constexpr double kClosest = 0.4;    // of the cells' size
-constexpr double kMostClouds = 40000.0, kMostFar = 0.35 * kMostClouds;  // where they stand closer, and else
-constexpr double kClosed = 0.98;    // share of the sky that is as good as all of it
-constexpr double kMuch = 3.0;       // of fill()
-constexpr double kShort = 0.4;      // oktas that are no matter
-constexpr double kCycleS = 4800.0;  // in which a cell's rank goes up and down once
-constexpr double kYoung = 0.35;     // share of the threshold over which a cloud grows up
+constexpr double kFarBases = 20.0;                           // heights of the base, of layers that cover more
+constexpr double kClosest = 0.4;                             // of the cells' size
+constexpr double kMostClouds = 30000.0, kMostFar = 14000.0;  // where they stand closer, and else
+constexpr double kClosed = 0.97;                             // share of the sky that is as good as all of it
+constexpr double kMuch = 3.0;                                // of fill()
+constexpr double kShort = 0.4;                               // oktas that are no matter
+constexpr double kCycleS = 4800.0;                           // in which a cell's rank goes up and down once
+constexpr double kYoung = 0.35;  // share of the threshold over which a cloud grows up
 constexpr int kDirections = 1200, kBisections = 14;
 constexpr double kMeasuredM = 2.0;  // height of the eye
 
