@@ -519,7 +519,8 @@ std::string explainUnreadable(std::string_view shown, std::string_view text) {
   if (digitFirst) return say("is not a visibility such as 4000, 9999 or 10SM");
   Cursor weather(text);
   if (!weather.eat('-') && !weather.eat('+')) weather.eat("VC");
-  if (!weather.done() && isMadeOfWeather(weather)) return say("is weather that cannot be together");
+  if (!weather.done() && isMadeOfWeather(weather))
+    return say("is weather that code table 4678 does not have");
   if (text.starts_with('-') || text.starts_with('+') || text.starts_with("VC")) {
     return say("is not a group of weather such as -RA, +TSRA or VCSH");
   }

@@ -67,7 +67,7 @@ TEST(MetarReport, HeadingMistakes) {
 TEST(MetarReport, WeatherThatCannotBe) {
   const auto together = parseMetar("KMRY 211753Z 24015KT 9999 MIRA BKN020 12/10 Q1010");
   ASSERT_EQ(together.errors.size(), 1u);
-  EXPECT_EQ(together.errors[0].reason, "'MIRA' is weather that cannot be together");
+  EXPECT_EQ(together.errors[0].reason, "'MIRA' is weather that code table 4678 does not have");
   EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 RA RA BKN020 12/10 Q1010"), (Columns{30}));
   EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 RA -RA BKN020 12/10 Q1010"), (Columns{30}));
   EXPECT_EQ(errorColumns("KMRY 211753Z 24015KT 9999 SN BLSN VCFG BKN020 12/10 Q1010"), (Columns{}));
