@@ -36,8 +36,8 @@ struct SkyBox {
   bool operator==(const SkyBox&) const = default;
 };
 void describe(SkyBox& b, ParamVisitor& v);
-void validate(
-    const SkyBox& b);  // throws ParameterError: a strip and faces, not all faces, or other keys alone
+// Throws ParameterError: a strip and faces, not all faces, or other keys alone.
+void validate(const SkyBox& b);
 
 // The six faces, square and of one size, three channels of linear Rec. 709 in cd/m2. The box is not empty.
 // Throws IoError that names the file.
