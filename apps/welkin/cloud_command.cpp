@@ -118,6 +118,7 @@ Volume<float> rasterised(const CloudArgs& args, CloudRequest& r) {
     const double below = field::boundsOf(balls).low.z / r.map.voxelM;
     r.lowM = std::min(std::floor(below), 0.0) * r.map.voxelM;
     std::vector<field::Ellipsoid> box;
+    box.reserve(balls.size());
     for (const field::Metaball& b : balls)
       box.push_back({b.centreM - glm::dvec3(0.0, 0.0, r.lowM), glm::dvec3(b.radiusM), glm::dvec3(0.0)});
     field::fitBox(r.map, box);

@@ -278,8 +278,8 @@ void refuseExtras(const CLI::App* app, const std::string& command) {
 
 // CLI11 says "--size: 1 required WxH missing" and "--size: At Most 1 required but received 2".
 std::string problemOf(const CLI::ArgumentMismatch& e) {
-  const std::string text = e.what(), flag = text.substr(0, text.find(':')), before = ": 1 required ",
-                    after = " missing";
+  std::string text = e.what();
+  const std::string flag = text.substr(0, text.find(':')), before = ": 1 required ", after = " missing";
   if (text.starts_with(flag + before) && text.ends_with(after)) {
     const std::size_t begin = flag.size() + before.size();
     return flag + ": expected " + text.substr(begin, text.size() - after.size() - begin) + " behind it";
