@@ -93,8 +93,8 @@ void keep(const std::string& path, const reference::SkyFilm& film, const std::st
 // there is, so that little is traced in vain.
 std::int64_t pathsAtOnce(const reference::SkyFilm& film) {
   constexpr std::int64_t kPaths = 131072;
-  const std::int64_t most = kPaths / (std::int64_t{film.width()} * film.height());
-  return std::clamp<std::int64_t>(film.samples() / 2, 1, std::max<std::int64_t>(most, 1));
+  const std::int64_t most = std::max<std::int64_t>(kPaths / (std::int64_t{film.width()} * film.height()), 1);
+  return std::clamp(film.samples() / 2, std::min(kLeastSamples, most), most);
 }
 
 // The same where a failure must not take the picture along: what went wrong, empty for nothing.

@@ -17,8 +17,10 @@ namespace {
 
 constexpr std::array kNames = {"red", "green", "blue", "squares", "cloud"};
 constexpr const char *kSamplesKey = "welkin_samples", *kEventsKey = "welkin_events";
-constexpr std::size_t kPathsAtATime = 2048;  // of a thread
-constexpr double kDarkest = 0.01;            // of the mean of a picture, for relative errors
+// Of a thread: it ends with lanes that have nothing left to do, so many are better, but all threads should
+// end at about the same time.
+constexpr std::size_t kMostAtATime = 2048, kLeastAtATime = 128, kShares = 6;
+constexpr double kDarkest = 0.01;  // of the mean of a picture, for relative errors
 
 // The nearest that two floats hold.
 double rounded(double x) {
@@ -43,7 +45,9 @@ SkyFilm::SkyFilm(int width, int height)
 void SkyFilm::addPaths(const SkyTracer& tracer, std::int64_t count, const std::function<void()>& pause) {
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_, n = static_cast<std::size_t>(count);
   std::vector<SkySample> samples(pixels * n);
-  parallelFor(pixels, std::max<std::size_t>(kPathsAtATime / n, 1), [&](std::size_t begin, std::size_t end) {
+  const std::size_t share = pixels * n / (kShares * static_cast<std::size_t>(threadCount()));
+  const std::size_t grain = std::max<std::size_t>(std::clamp(share, kLeastAtATime, kMostAtATime) / n, 1);
+  parallelFor(pixels, grain, [&](std::size_t begin, std::size_t end) {
     if (pause) pause();
     std::vector<PixelPath> paths;
     for (std::size_t i = begin; i < end; ++i)
