@@ -24,5 +24,7 @@ constexpr double degrees(double radians) {
 
 inline constexpr double kOktas = 8.0;       // make the whole sky
 inline constexpr double kCoverDepth = 0.3;  // optical depth from which on observers call it cloud
+// Of the air over the visibility that sky/ goes by, whose contrast is 2 % (H. Koschmieder 1924).
+inline constexpr double kVisibilityDepth = 3.912;
 
 }  // namespace welkin

@@ -269,6 +269,7 @@ float freeShare(std::uint64_t bits) {
   return (static_cast<float>(bits >> 16 & 0xffffff) + 0.5f) * 0x1p-24f;
 }
 
+// As above, where it is a part of each instruction set's code.
 template <class F>
 void eachBit(LaneBits bits, F&& f) {
   for (; bits != 0; bits &= bits - 1) f(static_cast<std::size_t>(std::countr_zero(bits)));

@@ -3,11 +3,17 @@
 
 #include <cmath>
 
+#include "welkin/core/glsl.h"
 #include "welkin/reference/directions.h"
 #include "welkin/sky/light.h"
 
 namespace welkin::reference {
 namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+#include "shaders/lib/moon.glsl"
+}  // namespace shared
 
 // Limb darkening of the sun, (1 - x^2)^(kLimb / 2) over the disc: D. Hestroffer and C. Magnan 1998,
 // "Wavelength dependency of the Solar limb darkening", at 550 nm.
@@ -79,7 +85,7 @@ glm::dvec3 SkyLights::discs(const glm::dvec3& direction) const {
     const double far = glm::length(across);
     const glm::dvec3 normal = (far > 0.0 ? across / far * x : across) - disc.direction * mu;
     const double mu0 = std::max(glm::dot(normal, sunDirection_), 0.0);
-    luminance += mean * (2.0 * mu0 / (mu0 + mu + 1e-4) + 1e-4);
+    luminance += mean * (2.0 * mu0 / (mu0 + mu + 1e-4) + static_cast<double>(shared::kEarthshine));
   }
   return luminance;
 }

@@ -59,9 +59,9 @@ AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double vis
   u.rayleighScattering = kRayleighOpticalDepth / static_cast<float>(kRayleighScaleHeightM);
   u.rayleighScaleHeightM = static_cast<float>(kRayleighScaleHeightM);
 
-  // H. Koschmieder 1924 with a contrast threshold of 2 %. What the air itself takes at 550 nm is not the
-  // haze's; a visibility beyond that of pure air leaves no haze.
-  const double total = 3.912 / std::max(visibilityM, 1.0);
+  // What the air itself takes at 550 nm is not the haze's; a visibility beyond that of pure air leaves no
+  // haze.
+  const double total = kVisibilityDepth / std::max(visibilityM, 1.0);
   const double air =
       kRayleighOpticalDepth.y / kRayleighScaleHeightM * std::exp(-groundAltitudeM / kRayleighScaleHeightM);
   const double aerosol = std::max(total - air, 0.0);

@@ -22,9 +22,8 @@ namespace {
 // extinction is -ln(0.05) = 2.996 divided by it.
 constexpr double kMorOpticalDepth = 2.996;
 
-// Weather::visibilityM is the range of a contrast of 2 %, by Koschmieder's 3.912: of the same air it is
-// longer.
-constexpr double kVisibilityOfMor = 3.912 / kMorOpticalDepth;
+// Weather::visibilityM is the range of a contrast of 2 %: of the same air it is longer.
+constexpr double kVisibilityOfMor = kVisibilityDepth / kMorOpticalDepth;
 
 constexpr double kFogVisibilityM = 1000.0;  // fog is what makes visibility less than this (code table 4678)
 
