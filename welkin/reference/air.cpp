@@ -13,12 +13,14 @@
 namespace welkin::reference {
 namespace {
 
-constexpr double kStepM = 20e3;  // longest; a chord of it sags by 8 m
+constexpr double kStepM = 40e3;  // longest; a chord of it sags by 31 m
 constexpr int kMostPieces = 24;
+constexpr double kNoHaze = 18.0;  // scale heights up
 
 // Of the table of extinctions: between two entries an exponential of 1200 m is a line within 1.4e-4. Along so
 // little of a way it is one as well.
 constexpr double kShortM = 500.0, kEntryM = 40.0, kEntriesTopM = 25e3, kLineM = 60.0;
+constexpr double kPlaceM = 200.0;  // of the table by which places are drawn
 
 // Of AirToLight.
 constexpr int kHeights = 200, kCosines = 160;
@@ -42,13 +44,26 @@ double tentIntegral(double x) {
   return x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x);
 }
 
-// Mean of exp(-h / scale) over a step along which h goes from h0 to h1 evenly but for a sag, a parabola of
-// which two thirds of the greatest is the mean.
-double meanExponential(double h0, double h1, double sagM, double scale) {
-  const double x = (h1 - h0) / scale;
-  const double mean = std::abs(x) < 1e-4 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-  const double sag = 2.0 / 3.0 * sagM / scale;
-  return std::exp(-h0 / scale) * mean * (1.0 + sag * (1.0 + 0.6 * sag));
+// 1 - exp(-x), x >= 0; a series where the difference would lose digits.
+double shareLost(double x) {
+  return x < 1e-3 ? x * (1.0 - x * (0.5 - x / 6.0)) : 1.0 - std::exp(-x);
+}
+
+// Mean of exp(-h / scale) over a step along which h / scale rises by x evenly but for a sag, a parabola; from
+// the exponentials at its ends.
+double meanExponential(double e0, double e1, double x, double sag) {
+  if (e0 + e1 <= 0.0) return 0.0;
+  // What of the greatest sag counts: two thirds in the mean, less where most of the air is near an end.
+  double mean = 0.0, counts = 0.0;
+  if (std::abs(x) < 0.1) {
+    mean = e0 * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0))));
+    counts = 2.0 / 3.0 - x * x / 90.0;
+  } else {
+    mean = (e0 - e1) / x;
+    counts = 4.0 / x * ((e0 + e1) / (e0 - e1) - 2.0 / x);
+  }
+  const double s = counts * sag;
+  return mean * (1.0 + s * (1.0 + 0.6 * s));
 }
 
 }  // namespace
@@ -60,7 +75,11 @@ Air::Air(const sky::AtmosphereUniforms& u)
   const glm::vec3 sum = u.rayleighScattering + u.aerosolExtinction + u.ozoneAbsorption;
   empty_ = sum.x + sum.y + sum.z <= 0.0f;
   for (double h = 0.0; h <= kEntriesTopM + 2.0 * kEntryM; h += kEntryM)
-    extinctions_.emplace_back(at(h).extinction);
+    extinctions_.push_back(at(h).extinction);
+  for (double h = 0.5 * kPlaceM; h <= top_ + 2.0 * kPlaceM; h += kPlaceM) {
+    const Medium m = at(h);
+    places_.push_back({glm::vec3(m.extinction), glm::vec3(m.rayleigh + m.aerosol)});
+  }
 }
 
 Air::Medium Air::at(double heightM) const {
@@ -75,51 +94,58 @@ Air::Medium Air::at(double heightM) const {
   return m;
 }
 
-void Air::addStep(Columns& columns, double h0, double h1, double sagM, double dt) const {
-  columns.rayleigh += dt * meanExponential(h0 + ground_, h1 + ground_, sagM, u_.rayleighScaleHeightM);
-  columns.aerosol += dt * meanExponential(h0, h1, sagM, u_.aerosolScaleHeightM);
+double Air::ozoneOver(double h0, double h1) const {
   const double x0 = (h0 + ground_ - u_.ozoneAltitudeM) / u_.ozoneHalfWidthM,
                x1 = (h1 + ground_ - u_.ozoneAltitudeM) / u_.ozoneHalfWidthM;
-  if (std::max(x0, x1) <= -1.0 || std::min(x0, x1) >= 1.0) return;
-  columns.ozone += dt * (std::abs(x1 - x0) < 1e-4 ? std::max(1.0 - std::abs(0.5 * (x0 + x1)), 0.0)
-                                                  : (tentIntegral(x1) - tentIntegral(x0)) / (x1 - x0));
+  if (std::max(x0, x1) <= -1.0 || std::min(x0, x1) >= 1.0) return 0.0;
+  return std::abs(x1 - x0) < 1e-4 ? std::max(1.0 - std::abs(0.5 * (x0 + x1)), 0.0)
+                                  : (tentIntegral(x1) - tentIntegral(x0)) / (x1 - x0);
 }
 
 glm::dvec3 Air::opticalDepth(const Sphere& earth, const Ray& ray, double t) const {
-  Columns columns;
+  // Metres of sea-level air, of ground-level aerosol, of the ozone layer's peak.
+  double rayleigh = 0.0, aerosol = 0.0, ozone = 0.0;
+  const double perRayleigh = 1.0 / u_.rayleighScaleHeightM, perAerosol = 1.0 / u_.aerosolScaleHeightM;
+  auto ofAerosol = [&](double h) { return h * perAerosol < kNoHaze ? std::exp(-h * perAerosol) : 0.0; };
   const int n = std::max(1, static_cast<int>(std::ceil(t / kStepM)));
   const double dt = t / n;
-  double h0 = earth.height(ray.from);
+  double h0 = std::max(earth.height(ray.from), 0.0), r0 = std::exp(-(h0 + ground_) * perRayleigh),
+         a0 = ofAerosol(h0);
   for (int i = 0; i < n && dt > 0.0; ++i) {
-    const double h1 = earth.height(ray.at(dt * (i + 1)));
+    const double h1 = std::max(earth.height(ray.at(dt * (i + 1))), 0.0), rise = h1 - h0;
     // Chord against arc: (1 - mu^2) dt^2 / (8 r) lower in the middle.
-    const double mu = (h1 - h0) / dt;
-    const double sag = std::max(1.0 - mu * mu, 0.0) * dt * dt / (8.0 * earth.radiusM());
-    addStep(columns, std::max(h0, 0.0), std::max(h1, 0.0), sag, dt);
-    h0 = h1;
+    const double mu = rise / dt, sag = std::max(1.0 - mu * mu, 0.0) * dt * dt / (8.0 * earth.radiusM());
+    const double r1 = std::exp(-(h1 + ground_) * perRayleigh), a1 = ofAerosol(h1);
+    rayleigh += dt * meanExponential(r0, r1, rise * perRayleigh, sag * perRayleigh);
+    aerosol += dt * meanExponential(a0, a1, rise * perAerosol, sag * perAerosol);
+    ozone += dt * ozoneOver(h0 - 2.0 / 3.0 * sag, h1 - 2.0 / 3.0 * sag);
+    h0 = h1, r0 = r1, a0 = a1;
     if (h0 > top_ && mu > 0.0) break;
   }
-  return glm::dvec3(u_.rayleighScattering) * columns.rayleigh +
-         glm::dvec3(u_.aerosolExtinction) * columns.aerosol + glm::dvec3(u_.ozoneAbsorption) * columns.ozone;
+  return glm::dvec3(u_.rayleighScattering) * rayleigh + glm::dvec3(u_.aerosolExtinction) * aerosol +
+         glm::dvec3(u_.ozoneAbsorption) * ozone;
 }
 
 glm::dvec3 Air::transmittance(const Sphere& earth, const Ray& ray, double t) const {
-  const double h0 = std::max(earth.height(ray.from), 0.0);
-  if (t > kShortM || h0 > kEntriesTopM - kShortM) return glm::exp(-opticalDepth(earth, ray, t));
-  auto extinction = [&](double h) {
-    const double x = h * (1.0 / kEntryM);
+  if (t > kShortM) return glm::exp(-opticalDepth(earth, ray, t));
+  constexpr double kTop = kEntriesTopM / kEntryM;
+  auto entryAt = [&](double along) { return std::max(earth.height(ray.at(along)), 0.0) * (1.0 / kEntryM); };
+  auto extinction = [&](double x) {
     const auto i = static_cast<std::size_t>(x);
-    const glm::dvec3 a(extinctions_[i]), b(extinctions_[i + 1]);
+    const glm::dvec3 &a = extinctions_[i], &b = extinctions_[i + 1];
     return a + (b - a) * (x - static_cast<double>(i));
   };
   glm::dvec3 tau;
   if (t < kLineM) {
-    tau = t * extinction(std::max(earth.height(ray.at(0.5 * t)), 0.0));
+    const double x = entryAt(0.5 * t);
+    if (x > kTop) return glm::exp(-opticalDepth(earth, ray, t));
+    tau = t * extinction(x);
   } else {
     // Two points of Gauss.
     constexpr double kFirst = 0.21132486540518712;
-    const double h1 = std::max(earth.height(ray.at(t)), 0.0);
-    tau = 0.5 * t * (extinction(h0 + kFirst * (h1 - h0)) + extinction(h1 + kFirst * (h0 - h1)));
+    const double x0 = entryAt(0.0), x1 = entryAt(t);
+    if (std::max(x0, x1) > kTop) return glm::exp(-opticalDepth(earth, ray, t));
+    tau = 0.5 * t * (extinction(x0 + kFirst * (x1 - x0)) + extinction(x1 + kFirst * (x0 - x1)));
   }
   if (std::max({tau.x, tau.y, tau.z}) > 0.05) return glm::exp(-tau);
   return 1.0 - tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0)));  // the series of exp(-tau)
@@ -134,12 +160,13 @@ glm::dvec3 Air::opticalDepthToSpace(const Sphere& earth, const Ray& ray) const {
 
 Air::Place Air::samplePlace(const Sphere& earth, const Ray& ray, double t, const glm::dvec3& weights,
                             Random& random) const {
-  // Pieces of even extinction, finer near the lowest point, where the air is densest.
+  // Pieces of even extinction, finer near the lowest point, where the air is densest. What the table and the
+  // series leave out is left out of the density as well.
   std::array<double, kMostPieces + 1> edges;
-  std::array<double, kMostPieces> extinction, mass;
+  std::array<double, kMostPieces> extinction, opaque, mass;
   const int n = t < 2e3 ? 1 : t < 30e3 ? 8 : kMostPieces;
   const double low = std::clamp(-earth.cosine(ray.from, ray.way) * earth.radiusM(), 0.0, t);
-  const double share = glm::dot(weights, glm::dvec3(1.0));
+  const glm::dvec3 chances = weights / (weights.x + weights.y + weights.z);
   double through = 1.0, total = 0.0;
   edges[0] = 0.0;
   // As many pieces on either side as the side is long.
@@ -154,22 +181,24 @@ Air::Place Air::samplePlace(const Sphere& earth, const Ray& ray, double t, const
       end = low + (t - low) * x * x;
     }
     if (i + 1 == n) end = t;
-    const Medium m = at(earth.height(ray.at(0.5 * (edges[i] + end))));
-    extinction[i] = std::max(glm::dot(m.extinction, weights) / share, 1e-30);
-    const double step = extinction[i] * (end - edges[i]);
-    mass[i] = through * -std::expm1(-step) *
-              std::max(glm::dot(m.rayleigh + m.aerosol, weights) / share, 1e-30) / extinction[i];
+    const double h = std::max(earth.height(ray.at(0.5 * (edges[i] + end))), 0.0);
+    const auto entry = static_cast<std::size_t>(h * (1.0 / kPlaceM));
+    const PlaceEntry& m = places_[std::min(entry, places_.size() - 1)];
+    extinction[i] = std::max(glm::dot(glm::dvec3(m.extinction), chances), 1e-30);
+    opaque[i] = shareLost(extinction[i] * (end - edges[i]));
+    mass[i] =
+        through * opaque[i] * std::max(glm::dot(glm::dvec3(m.scattering), chances), 1e-30) / extinction[i];
     total += mass[i];
-    through *= std::exp(-step);
+    through *= 1.0 - opaque[i];
     edges[i + 1] = end;
   }
   double u = unit(random) * total;
   int i = 0;
   while (i + 1 < n && u >= mass[i]) u -= mass[i++];
-  const double width = edges[i + 1] - edges[i], opaque = -std::expm1(-extinction[i] * width);
+  const double width = edges[i + 1] - edges[i];
   const double v = std::clamp(u / mass[i], 0.0, 1.0 - 0x1p-53);
-  const double into = std::min(-std::log1p(-v * opaque) / extinction[i], width);
-  const double density = mass[i] / total * extinction[i] * std::exp(-extinction[i] * into) / opaque;
+  const double into = std::min(-std::log1p(-v * opaque[i]) / extinction[i], width);
+  const double density = mass[i] / total * extinction[i] * std::exp(-extinction[i] * into) / opaque[i];
   return {edges[i] + into, density};
 }
 

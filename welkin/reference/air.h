@@ -28,7 +28,7 @@ class Air {
   bool empty() const { return empty_; }
 
   // Optical depth of the stretch [0, t] of a ray within the air. Steps of the exact integral of an
-  // exponential along the curved way: within 2e-4.
+  // exponential along the curved way: within 4e-4.
   glm::dvec3 opticalDepth(const Sphere& earth, const Ray& ray, double t) const;
   // The transmittance of that stretch; of one as short as most are, by way of a table over height: within
   // 1e-5.
@@ -50,16 +50,17 @@ class Air {
   double sampleAerosol(Random& random) const;
 
  private:
-  struct Columns {  // metres of sea-level air, of ground-level aerosol, of the ozone layer's peak
-    double rayleigh = 0.0, aerosol = 0.0, ozone = 0.0;
+  struct PlaceEntry {
+    glm::vec3 extinction, scattering;  // 1/m
   };
-  void addStep(Columns& columns, double h0, double h1, double sagM, double dt) const;
+  double ozoneOver(double h0, double h1) const;  // mean along a step, of its peak
 
   sky::AtmosphereUniforms u_;
   double ground_, top_;
   double fineG_ = 0.0;  // of the haze's wide lobe
   bool empty_ = false;
-  std::vector<glm::vec3> extinctions_;  // by height above the ground
+  std::vector<glm::dvec3> extinctions_;  // by height above the ground
+  std::vector<PlaceEntry> places_;       // coarser, to the top
 };
 
 // Transmittance to space towards a light's disc from where clouds are, tabulated over height and the cosine

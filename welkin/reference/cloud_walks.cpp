@@ -253,6 +253,16 @@ void lookUp(const CloudDensity& density, float radius, CloudLanes& w,
   }
 }
 
+// The first free depths of lanes whose rays begin.
+void drawDepths(CloudLanes& w, const RayPieces& rays) {
+  const Floats df;
+  HWY_ALIGN float drawn[kCloudLanes];
+  for (std::size_t k = 0; k < rays.count; ++k) drawn[k] = w.free[rays.lane[k]];
+  for (std::size_t o = 0; o < rays.count; o += hn::Lanes(df))
+    hn::Store(hn::Neg(hn::Log(df, hn::Load(df, drawn + o))), df, drawn + o);
+  for (std::size_t k = 0; k < rays.count; ++k) w.depth[rays.lane[k]] = drawn[k];
+}
+
 }  // namespace welkin::reference::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -261,8 +271,8 @@ HWY_AFTER_NAMESPACE();
 namespace welkin::reference {
 namespace {
 
-// So many lanes wait for the density while others walk.
-constexpr int kEnoughAsk = 20;
+// So many lanes wait for the density while others walk: whole vectors of any machine are looked up.
+constexpr std::size_t kEnoughAsk = 16;
 
 float freeShare(std::uint64_t bits) {
   // The least number is half a step, so that the longest free depth is 18.
@@ -277,6 +287,7 @@ void eachBit(LaneBits bits, F&& f) {
 
 }  // namespace
 
+HWY_EXPORT(drawDepths);
 HWY_EXPORT(stepLanes);
 HWY_EXPORT(lookUp);
 
@@ -287,45 +298,75 @@ CloudWalks::CloudWalks(const CloudMedium& medium) : medium_(medium), lanes_{} {
   lanes_.tileSide.fill(4);
 }
 
-bool CloudWalks::begin(std::size_t i, const Ray& ray, double end, Random& random) {
+void CloudWalks::begin(std::size_t i, const Ray& ray, double end, Random& random) {
   collisions_[i].reset();
   transmittances_[i] = 1.0;
   Ways& w = ways_[i];
   w.ray = ray;
   w.random = &random;
-  w.stretches = medium_.stretches(ray, end);
-  w.stretch = 0;
-  w.next = w.stretches[0][0];
-  lanes_.depth[i] = -std::log(freeShare(random.next()));
+  rays_.end[rays_.count] = end;
+  rays_.add(i, ray);
+  lanes_.free[i] = freeShare(random.next());
   lanes_.through[i] = 1.0f;
   lanes_.control[i] = 0.0f;
-  if (!nextPiece(i)) return false;
-  walking_ |= LaneBits{1} << i;
-  return true;
 }
 
-bool CloudWalks::nextPiece(std::size_t i) {
+void CloudWalks::beginRays() {
+  if (rays_.count == 0) return;
+  findStretches(medium_, rays_);
+  HWY_DYNAMIC_DISPATCH(drawDepths)(lanes_, rays_);
+  for (std::size_t k = 0; k < rays_.count; ++k) {
+    const std::size_t i = rays_.lane[k];
+    Ways& w = ways_[i];
+    for (std::size_t s = 0; s < 2; ++s) w.stretches[s] = {rays_.starts[s][k], rays_.ends[s][k]};
+    w.stretch = 0;
+    w.next = w.stretches[0][0];
+    if (!toNextPiece(i)) finish(i);
+  }
+  rays_.count = 0;
+}
+
+bool CloudWalks::toNextPiece(std::size_t i) {
   Ways& w = ways_[i];
-  CloudLanes& l = lanes_;
   for (; w.stretch < 2; w.next = ++w.stretch < 2 ? w.stretches[1][0] : 0.0) {
     const double last = w.stretches[w.stretch][1];
-    while (w.next < last) {
-      w.piece = w.next;
-      w.next += CloudMedium::kPieceM;
-      const auto length = static_cast<float>(std::min(CloudMedium::kPieceM, last - w.piece));
-      const CloudLine line = medium_.lineFrom(w.ray, w.piece, length);
-      auto set = [&](CloudLanes::Vectors& v, const glm::vec3& to) {
-        v.x[i] = to.x, v.y[i] = to.y, v.z[i] = to.z;
-      };
-      set(l.from, line.from), set(l.slope, line.slope), set(l.inverse, line.inverse);
-      set(l.place, glm::vec3(w.ray.at(w.piece))), set(l.way, glm::vec3(w.ray.way));
-      l.t[i] = 0.0f;
-      l.end[i] = length;
-      if (nextTile(i)) return true;
-      if (MajorantGrid::isBeyond(line.from)) break;
-    }
+    if (w.next >= last) continue;
+    w.piece = w.next;
+    w.next += CloudMedium::kPieceM;
+    pieces_.start[pieces_.count] = w.piece;
+    pieces_.length[pieces_.count] = static_cast<float>(std::min(CloudMedium::kPieceM, last - w.piece));
+    pieces_.add(i, w.ray);
+    return true;
   }
   return false;
+}
+
+void CloudWalks::beginPieces() {
+  CloudLanes& l = lanes_;
+  while (const std::size_t count = pieces_.count) {
+    layLines(medium_.earth(), pieces_);
+    pieces_.count = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = pieces_.lane[k];
+      auto set = [&](CloudLanes::Vectors& v, const RayPieces::Vectors<float>& to) {
+        v.x[i] = to.x[k], v.y[i] = to.y[k], v.z[i] = to.z[k];
+      };
+      set(l.from, pieces_.place), set(l.slope, pieces_.slope), set(l.inverse, pieces_.inverse);
+      set(l.place, pieces_.placeInSpace);
+      const glm::vec3 way(ways_[i].ray.way);
+      l.way.x[i] = way.x, l.way.y[i] = way.y, l.way.z[i] = way.z;
+      l.t[i] = 0.0f;
+      l.end[i] = pieces_.length[k];
+      if (nextTile(i)) {
+        walking_ |= LaneBits{1} << i;
+        continue;
+      }
+      // Those that go on are added before the one that is looked at, or in its place.
+      Ways& w = ways_[i];
+      if (MajorantGrid::isBeyond({l.from.x[i], l.from.y[i], l.from.z[i]})) w.next = w.stretches[w.stretch][1];
+      if (!toNextPiece(i)) finish(i);
+    }
+  }
 }
 
 bool CloudWalks::nextTile(std::size_t i) {
@@ -352,14 +393,14 @@ bool CloudWalks::nextTile(std::size_t i) {
   return true;
 }
 
-bool CloudWalks::collide(std::size_t i, const Ray& ray, double end, Random& random) {
+void CloudWalks::collide(std::size_t i, const Ray& ray, double end, Random& random) {
   lanes_.collides[i] = -1;
-  return begin(i, ray, end, random);
+  begin(i, ray, end, random);
 }
 
-bool CloudWalks::transmit(std::size_t i, const Ray& ray, double end, Random& random) {
+void CloudWalks::transmit(std::size_t i, const Ray& ray, double end, Random& random) {
   lanes_.collides[i] = 0;
-  return begin(i, ray, end, random);
+  begin(i, ray, end, random);
 }
 
 void CloudWalks::finish(std::size_t i) {
@@ -386,12 +427,18 @@ bool CloudWalks::spent(std::size_t i) {
 }
 
 LaneBits CloudWalks::run() {
+  ended_ = 0;
   const MajorantGrid* grid = medium_.grid();
-  if (!grid) return 0;
+  if (!grid) {
+    for (std::size_t k = 0; k < rays_.count; ++k) finish(rays_.lane[k]);
+    rays_.count = 0;
+    return ended_;
+  }
   CloudLanes& l = lanes_;
   const MajorantGrid::Slices& slices = grid->slices();
-  ended_ = 0;
-  while (ended_ == 0 && (walking_ != 0 || asking_ != 0)) {
+  while (ended_ == 0 && (rays_.count != 0 || pieces_.count != 0 || walking_ != 0 || asking_ != 0)) {
+    beginRays();
+    beginPieces();
     if (walking_ != 0) {
       LaneBits hit = 0, out = 0, deep = 0;
       HWY_DYNAMIC_DISPATCH(stepLanes)(*grid, l, walking_, hit, out, deep);
@@ -408,7 +455,9 @@ LaneBits CloudWalks::run() {
         walking_ &= ~(LaneBits{1} << i);
       });
       eachBit(out, [&](std::size_t i) {
-        if (l.t[i] >= l.end[i] ? !nextPiece(i) : !nextTile(i) && !nextPiece(i)) finish(i);
+        if (l.t[i] < l.end[i] && nextTile(i)) return;
+        walking_ &= ~(LaneBits{1} << i);
+        if (!toNextPiece(i)) finish(i);
       });
       eachBit(deep & walking_, [&](std::size_t i) {
         l.through[i] *= std::exp(-l.control[i]);
@@ -416,7 +465,8 @@ LaneBits CloudWalks::run() {
         if (spent(i)) finish(i);
       });
     }
-    if (std::popcount(asking_) >= kEnoughAsk || (walking_ == 0 && ended_ == 0)) answer();
+    if (static_cast<std::size_t>(std::popcount(asking_)) >= kEnoughAsk || (walking_ == 0 && ended_ == 0))
+      answer();
   }
   return ended_;
 }
@@ -424,12 +474,14 @@ LaneBits CloudWalks::run() {
 void CloudWalks::answer() {
   CloudLanes& l = lanes_;
   alignas(64) CloudLanes::Each<std::int32_t> lanes{};
-  std::size_t count = 0;
-  eachBit(asking_, [&](std::size_t i) { lanes[count++] = static_cast<std::int32_t>(i); });
+  const std::size_t asking = static_cast<std::size_t>(std::popcount(asking_)),
+                    count = asking < kEnoughAsk ? asking : asking - asking % kEnoughAsk;
+  LaneBits later = asking_;
+  for (std::size_t k = 0; k < count; ++k, later &= later - 1) lanes[k] = std::countr_zero(later);
   HWY_DYNAMIC_DISPATCH(lookUp)(medium_.density(), static_cast<float>(medium_.earth().radiusM()), l, lanes,
                                count, medium_.matters());
-  walking_ |= asking_;
-  asking_ = 0;
+  walking_ |= asking_ & ~later;
+  asking_ = later;
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(lanes[k]);
     const CloudLanes::Answers& answers = l.answers;

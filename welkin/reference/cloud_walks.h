@@ -14,6 +14,7 @@
 
 #include "welkin/core/random.h"
 #include "welkin/reference/cloud_medium.h"
+#include "welkin/reference/ray_pieces.h"
 #include "welkin/reference/sphere.h"
 
 namespace welkin::reference {
@@ -60,10 +61,10 @@ class CloudWalks {
 
   explicit CloudWalks(const CloudMedium& medium);  // outlives this
 
-  // Begin in a lane whose last walk has ended; false: this one has ended too, where there is no cloud. As
-  // CloudMedium::collide() and transmittance(); `random` outlives the walk.
-  bool collide(std::size_t lane, const Ray& ray, double end, Random& random);
-  bool transmit(std::size_t lane, const Ray& ray, double end, Random& random);
+  // Begin in a lane whose last walk has ended. As CloudMedium::collide() and transmittance(); `random`
+  // outlives the walk.
+  void collide(std::size_t lane, const Ray& ray, double end, Random& random);
+  void transmit(std::size_t lane, const Ray& ray, double end, Random& random);
 
   // Goes on until at least one walk has ended: those that have; 0 when there is none.
   LaneBits run();
@@ -80,8 +81,10 @@ class CloudWalks {
     std::size_t stretch = 0;
     double piece = 0.0, next = 0.0;  // where the piece begins, and the one after it
   };
-  bool begin(std::size_t lane, const Ray& ray, double end, Random& random);
-  bool nextPiece(std::size_t lane);
+  void begin(std::size_t lane, const Ray& ray, double end, Random& random);
+  void beginRays();
+  bool toNextPiece(std::size_t lane);  // into pieces_
+  void beginPieces();
   bool nextTile(std::size_t lane);
   void answer();  // those that ask for the density
   void collided(std::size_t lane, CloudMedium::Matter matter);
@@ -93,6 +96,7 @@ class CloudWalks {
   std::array<Ways, kLanes> ways_;
   std::array<std::optional<CloudMedium::Collision>, kLanes> collisions_;
   std::array<double, kLanes> transmittances_{};
+  RayPieces rays_{}, pieces_{};  // that begin
   LaneBits walking_ = 0, asking_ = 0, ended_ = 0;
 };
 

@@ -29,8 +29,10 @@ namespace welkin::reference {
 struct CloudLine {
   glm::vec3 from, slope, inverse;  // inverse: of the slope; 0 where it has none
 
+  static constexpr float kLeastSlope = 1e-9f;
+
   CloudLine(const glm::vec3& start, const glm::vec3& along) : from(start), slope(along) {
-    for (int k = 0; k < 3; ++k) inverse[k] = std::abs(slope[k]) > 1e-9f ? 1.0f / slope[k] : 0.0f;
+    for (int k = 0; k < 3; ++k) inverse[k] = std::abs(slope[k]) > kLeastSlope ? 1.0f / slope[k] : 0.0f;
   }
   // Where it crosses a plane across axis k; never: far away.
   float crosses(int k, float side) const {

@@ -86,8 +86,10 @@ class Paths {
     std::size_t lane;
     const Ray& ray;
     Random& random;
-    bool await_ready() { return !paths.walks_.collide(lane, ray, CloudMedium::kToGround, random); }
-    void await_suspend(std::coroutine_handle<>) {}
+    bool await_ready() { return false; }
+    void await_suspend(std::coroutine_handle<>) {
+      paths.walks_.collide(lane, ray, CloudMedium::kToGround, random);
+    }
     std::optional<Collision> await_resume() {
       const TracedSky& sky = paths.sky_;
       std::optional<Collision> collision;
@@ -104,8 +106,10 @@ class Paths {
     std::size_t lane;
     const Ray& ray;
     Random& random;
-    bool await_ready() { return !paths.walks_.transmit(lane, ray, CloudMedium::kToGround, random); }
-    void await_suspend(std::coroutine_handle<>) {}
+    bool await_ready() { return false; }
+    void await_suspend(std::coroutine_handle<>) {
+      paths.walks_.transmit(lane, ray, CloudMedium::kToGround, random);
+    }
     double await_resume() {
       const TracedSky& sky = paths.sky_;
       const double through = paths.walks_.transmittance(lane);

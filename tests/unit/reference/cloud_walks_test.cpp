@@ -73,13 +73,12 @@ std::vector<Found> walked(const CloudMedium& medium, const std::vector<Ray>& ray
   std::vector<std::size_t> at(CloudWalks::kLanes);
   std::size_t next = 0;
   auto give = [&](std::size_t lane) {
-    while (next < rays.size()) {
-      const std::size_t i = at[lane] = next++;
-      if (collide ? walks.collide(lane, rays[i], end, randoms[i])
-                  : walks.transmit(lane, rays[i], end, randoms[i]))
-        return;
-      found[i] = {walks.collision(lane), walks.transmittance(lane)};
-    }
+    if (next == rays.size()) return;
+    const std::size_t i = at[lane] = next++;
+    if (collide)
+      walks.collide(lane, rays[i], end, randoms[i]);
+    else
+      walks.transmit(lane, rays[i], end, randoms[i]);
   };
   for (std::size_t lane = 0; lane < lanes; ++lane) give(lane);
   while (LaneBits ended = walks.run())
@@ -89,6 +88,53 @@ std::vector<Found> walked(const CloudMedium& medium, const std::vector<Ray>& ray
       give(lane);
     }
   return found;
+}
+
+TEST(RayPieces, OfManyRaysAreThoseOfEach) {
+  const Clouds clouds(
+      scene::buildSky(testing::cloudyScene(40.0, {Genus::kCumulus, Genus::kCirrus}, 4.0), 0.0));
+  std::vector<Ray> rays = someRays(2000);
+  for (std::size_t i = 0; i < rays.size(); i += 3) {
+    // From above the clouds; and down past them to under their bases and up again.
+    rays[i].from.z = 20e3;
+    const double radius = clouds.medium->earth().radiusM(),
+                 deepest = clouds.medium->grid()->lowM() * static_cast<double>(i) / 1e3,
+                 share = (radius + deepest) / (radius + 20e3), down = -std::sqrt(1.0 - share * share);
+    if (i % 2 == 0) rays[i].way = {std::sqrt(1.0 - down * down), 0.0, down};
+  }
+  int empty = 0, twice = 0;
+  for (std::size_t first = 0; first < rays.size(); first += 50) {
+    RayPieces pieces{};
+    for (std::size_t k = 0; k < 50; ++k) {
+      const Ray& ray = rays[first + k];
+      pieces.end[k] = k % 4 == 0 ? 1e3 * static_cast<double>(k) : CloudMedium::kToGround;
+      pieces.start[k] = 100.0 * static_cast<double>(k);
+      pieces.length[k] = 2000.0f - 30.0f * static_cast<float>(k);
+      pieces.add(k, ray);
+    }
+    findStretches(*clouds.medium, pieces);
+    layLines(clouds.medium->earth(), pieces);
+    for (std::size_t k = 0; k < pieces.count; ++k) {
+      const Ray& ray = rays[first + k];
+      const CloudMedium::Stretches stretches = clouds.medium->stretches(ray, pieces.end[k]);
+      for (std::size_t s = 0; s < 2; ++s) {
+        const bool any = stretches[s][0] < stretches[s][1];
+        ASSERT_EQ(pieces.starts[s][k] < pieces.ends[s][k], any) << first + k;
+        empty += !any;
+        twice += any && s == 1;
+        if (!any) continue;
+        EXPECT_DOUBLE_EQ(pieces.starts[s][k], stretches[s][0]);
+        EXPECT_DOUBLE_EQ(pieces.ends[s][k], stretches[s][1]);
+      }
+      const CloudLine line = clouds.medium->lineFrom(ray, pieces.start[k], pieces.length[k]);
+      EXPECT_EQ(pieces.lane[k], k);
+      EXPECT_EQ(glm::vec3(pieces.place.x[k], pieces.place.y[k], pieces.place.z[k]), line.from);
+      EXPECT_EQ(glm::vec3(pieces.slope.x[k], pieces.slope.y[k], pieces.slope.z[k]), line.slope);
+      EXPECT_EQ(glm::vec3(pieces.inverse.x[k], pieces.inverse.y[k], pieces.inverse.z[k]), line.inverse);
+    }
+  }
+  EXPECT_GT(empty, 100);
+  EXPECT_GT(twice, 20);
 }
 
 TEST(CloudDensity, OfManyPointsIsThatOfEach) {
@@ -219,9 +265,10 @@ TEST(CloudWalks, EndAtOnceWhereThereIsNoCloud) {
   const CloudMedium none(*clouds.state.clouds, {}, {});
   CloudWalks walks(none);
   Random random(1);
-  EXPECT_FALSE(walks.collide(0, {{0.0, 0.0, 2.0}, {0.0, 0.0, 1.0}}, CloudMedium::kToGround, random));
+  walks.collide(0, {{0.0, 0.0, 2.0}, {0.0, 0.0, 1.0}}, CloudMedium::kToGround, random);
+  walks.transmit(3, {{0.0, 0.0, 2.0}, {0.0, 0.0, 1.0}}, CloudMedium::kToGround, random);
+  EXPECT_EQ(walks.run(), 0b1001u);
   EXPECT_FALSE(walks.collision(0));
-  EXPECT_FALSE(walks.transmit(3, {{0.0, 0.0, 2.0}, {0.0, 0.0, 1.0}}, CloudMedium::kToGround, random));
   EXPECT_EQ(walks.transmittance(3), 1.0);
   EXPECT_EQ(walks.run(), 0u);
 }
