@@ -13,7 +13,7 @@ float airDither = 0.5;            // a pass's, in [0, 1): where in their stretch
 const int kAirSamples = WELKIN_AIR_SAMPLES;
 const float kAirAll = 0.4;        // air that takes as much light as this, or more, has them all; thinner air, whose shadows are fainter, fewer
 
-bool airShadowsKnown() { return uBandCount != 0 && uLineTowardsSun >= 0.5; }
+bool airShadowsKnown() { return uBandCount != 0; }
 
 // The share of what the air at a distance would add in the sun that it does add, but for what sheets take. Light that clouds turn by some
 // degrees only lights the air behind them as if it had not been turned.

@@ -87,7 +87,7 @@ CloudDepths cloudDepthsAt(sampler3D volume, vec3 q) {
 
 // Depth towards the sun from anywhere outside the bands too, as for the ground: along the line to the next band, then as stored.
 float cloudDepthToSun(sampler3D volume, vec3 q) {
-  if (uBandCount == 0 || uLineTowardsSun < 0.5) return 0.0;
+  if (uBandCount == 0) return 0.0;
   vec3 p = q;
   bool inside = false;
   float nextBase = 1e9;

@@ -104,7 +104,7 @@ CloudDepths depthsAsOfDroplets(CloudDepths d, float rain, vec4 place) {
   float more = rain * ((1.0 - kRainAsymmetry) / kSimilarity - 1.0);
   float above = (1.0 - place.y) * place.z * place.w, below = place.y * place.z * place.w;
   float slant = 1.0 / max(abs(uKeyDirection.z), 0.05);
-  vec2 alongSun = slant * (uKeyDirection.z >= 0.0 ? vec2(above, below) : vec2(below, above));
+  vec2 alongSun = slant * (uLineTowardsSun > 0.5 ? vec2(above, below) : vec2(below, above));
   return CloudDepths(d.toSun + more * min(d.toSun, alongSun.x), d.fromSun + more * min(d.fromSun, alongSun.y),
                      d.up + more * min(d.up, above), d.down + more * min(d.down, below));
 }

@@ -12,6 +12,7 @@
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/projector.h"
 #include "welkin/scene/rain_shafts.h"
+#include "welkin/shading/far_decks.h"
 
 namespace welkin::shading {
 namespace {
@@ -154,12 +155,15 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
 void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table) {
   constexpr int kHeights = 64, kSines = 16;
   if (table.data.empty()) table = Image<float>(kHeights, kSines, 3);
+  const FarDecks decks(state);
+  const bool towards = decks.lineTowards(light.direction.z);
   for (int y = 0; y < kSines; ++y)
     for (int x = 0; x < kHeights; ++x) {
       const double height = kKeyLightTopM * (x + 0.5) / kHeights;
       const double sine = light.direction.z + kKeyLightReach * (2.0 * (y + 0.5) / kSines - 1.0);
-      const glm::vec3 arriving = light.illuminance * state.atmosphere->transmittanceToSpace(
-                                                         state.scene.place.altitudeM + height, sine);
+      glm::vec3 arriving = light.illuminance *
+                           state.atmosphere->transmittanceToSpace(state.scene.place.altitudeM + height, sine);
+      if (decks.any()) arriving *= static_cast<float>(decks.through(height, sine, towards));
       for (int c = 0; c < 3; ++c) table.at(x, y, c) = arriving[c];
     }
 }
@@ -273,11 +277,10 @@ LightVolumeLayout lightVolumeLayout(const scene::SkyState& state, std::optional<
 }
 
 void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout) {
-  // Nearer to level than two degrees the line would leave the volume before it has crossed a layer.
   const glm::vec3 d = state.lights[0].direction;
-  layout.towardsSun = d.z >= 0.0f;
+  layout.towardsSun = FarDecks(state).lineTowards(d.z);
   glm::vec3 line = layout.towardsSun ? d : -d;
-  line.z = std::max(line.z, 0.035f);
+  line.z = std::max(line.z, kLeastElevation);
   layout.line = glm::normalize(line);
   layout.sunOverSky = state.ambient.sunOverSky;
   layout.broken = 1.0f - state.ambient.cover * state.ambient.cover;
