@@ -5,6 +5,7 @@
 // The whole march, with all that it needs, comes with it. The pass defines WELKIN_SEGMENTS.
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"

@@ -6,7 +6,7 @@
 // second, wider beam (delta scaling: J. H. Joseph, W. J. Wiscombe and J. A. Weinman 1976, "The Delta-Eddington Approximation for Radiative
 // Flux Transfer"); what is left has a mean and two moments along the line to the light.
 //
-// Needs phase.glsl before it. Shared by C++ and GLSL, see welkin/core/glsl.h.
+// Needs phase.glsl and eclipse.glsl before it. Shared by C++ and GLSL, see welkin/core/glsl.h.
 // Frame: at the eye, z up, x and y horizontal. h: altitude above mean sea level in metres; mu: cosine of the angle from the
 // zenith; t: metres along a ray. Altitudes along rays are computed as differences, so that 32 bits hold them to millimetres although
 // the earth's radius does not fit. Light in linear Rec. 709 (cd/m2, lux), extinction in 1/m. All tables want linear filtering and
@@ -253,10 +253,22 @@ WELKIN_FN void atmosphereSecondOrder(Atmosphere a, sampler2D transmittanceLut, f
 // Two lights; the second may have no illuminance. Directions in the frame of the eye.
 struct AtmosphereLights {
   vec3 direction0;
-  vec3 illuminance0;  // lux at the top of the atmosphere
+  vec3 illuminance0;  // lux at the top of the atmosphere, not eclipsed
+  MoonShadow shadow0;
   vec3 direction1;
   vec3 illuminance1;
+  MoonShadow shadow1;
 };
+
+// Shares of a light at a place, metres from the eye: of its own (x), and of what of it the air about the place has scattered (y). Into the
+// moon's umbra comes light that the air outside has scattered (G. E. Shaw 1978, "Sky radiance during a total solar eclipse: a theoretical
+// model"): fitted to clear skies of the reference renderer in the totalities of Dallas 2024, the sun 65 degrees up, and Leon 2026, 10 degrees.
+WELKIN_CONST float kIntoUmbra = 1.1e-3f;
+WELKIN_FN vec2 atmosphereLightShares(MoonShadow shadow, vec3 lightDir, vec3 fromEyeM) {
+  if (shadow.moonRadius <= 0.0f) return vec2(1.0f);
+  float share = sunShareAt(shadow, lightDir, fromEyeM);
+  return vec2(share, share + kIntoUmbra * (1.0f - share));
+}
 
 // How the air turns light by the angle between a ray and a light: phase functions, of haze its two lobes, each for both beams; and for light
 // from all around what they keep of the moments of the table, P_l and all. Rayleigh's own moments are 1, 0, 1/10; Henyey and Greenstein's g^l.
@@ -286,13 +298,15 @@ struct AtmosphereSource {
 };
 
 WELKIN_FN AtmosphereSource atmosphereSource(Atmosphere a, sampler2D transmittanceLut, sampler2D multipleScatteringLut, AtmosphereMedium m,
-                                            float h, float muLight, AtmosphereTurn turn) {
+                                            float h, float muLight, AtmosphereTurn turn, vec2 shares) {
   AtmosphereBeams beams = atmosphereBeams(a, transmittanceLut, h, muLight);
   vec2 uv = atmosphereMultipleScatteringUv(a, h, muLight);
   vec2 next = vec2(0.0f, 1.0f / kMultipleScatteringMoments);
-  vec3 mean = vec3(textureLod(multipleScatteringLut, uv, 0.0f));
-  vec3 first = vec3(textureLod(multipleScatteringLut, uv + next, 0.0f));
-  vec3 second = vec3(textureLod(multipleScatteringLut, uv + 2.0f * next, 0.0f));
+  vec3 mean = shares.y * vec3(textureLod(multipleScatteringLut, uv, 0.0f));
+  vec3 first = shares.y * vec3(textureLod(multipleScatteringLut, uv + next, 0.0f));
+  vec3 second = shares.y * vec3(textureLod(multipleScatteringLut, uv + 2.0f * next, 0.0f));
+  beams.straight *= shares.x;
+  beams.turned *= shares.x;
   vec3 fine = (1.0f - kHazePeakWeight) * m.aerosol, peak = kHazePeakWeight * m.aerosol;
   return AtmosphereSource((beams.straight + beams.turned) * (m.rayleigh * turn.rayleigh) +
                               fine * (beams.straight * turn.fine + beams.turned * turn.fineOfTurned) +
@@ -321,14 +335,16 @@ WELKIN_FN void atmosphereMarch(Atmosphere a, sampler2D transmittanceLut, sampler
   if (lights.illuminance0.y > 0.0f) {
     float c = dot(dir, lights.direction0);
     float muLight = (r * lights.direction0.z + t * c) / (a.seaRadiusM + along);
-    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c));
+    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c),
+                                          atmosphereLightShares(lights.shadow0, lights.direction0, t * dir));
     wide += lights.illuminance0 * s.wide;
     narrow += lights.illuminance0 * s.narrow;
   }
   if (lights.illuminance1.y > 0.0f) {
     float c = dot(dir, lights.direction1);
     float muLight = (r * lights.direction1.z + t * c) / (a.seaRadiusM + along);
-    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c));
+    AtmosphereSource s = atmosphereSource(a, transmittanceLut, multipleScatteringLut, m, h, muLight, atmosphereTurn(a, c),
+                                          atmosphereLightShares(lights.shadow1, lights.direction1, t * dir));
     wide += lights.illuminance1 * s.wide;
     narrow += lights.illuminance1 * s.narrow;
   }

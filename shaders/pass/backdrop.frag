@@ -3,6 +3,7 @@
 // WELKIN_VOLUMES, WELKIN_SPLATS: and with those of volumes, of metaballs. WELKIN_BEYOND: and stars, planets and Milky Way. WELKIN_BACKDROP: 0 all of it, 1 where there is clear sky alone, 2 where there is ground alone (welkin/shading/backdrop_tiles.h).
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"

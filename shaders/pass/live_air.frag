@@ -4,6 +4,7 @@
 
 #define WELKIN_AIR_SAMPLES 8
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"

@@ -3,6 +3,7 @@
 // and the thin layers among them, for any OpenGL camera; what lies behind is drawn elsewhere and shines through.
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"

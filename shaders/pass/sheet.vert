@@ -3,6 +3,7 @@
 // of the sheet where it is thin and thick, from its sunny and its shady side.
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"

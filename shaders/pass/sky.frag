@@ -6,6 +6,7 @@
 
 #include "lib/projection.glsl"
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_uniforms.glsl"

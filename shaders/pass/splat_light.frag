@@ -2,6 +2,7 @@
 // Light of a ball along one ray: at the place in it that is seen most, as it arrives at the eye, with what the air in front adds.
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"

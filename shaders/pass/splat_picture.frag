@@ -3,6 +3,7 @@
 // In the shape's own frame lengths are in widths of the cloud.
 
 #include "lib/phase.glsl"
+#include "lib/eclipse.glsl"
 #include "lib/atmosphere.glsl"
 #include "lib/sky_uniforms.glsl"
 #include "lib/cloud_light.glsl"

@@ -9,7 +9,9 @@ namespace welkin::sky::shared {
 
 using namespace welkin::glsl;
 #include "shaders/lib/phase.glsl"
-// Keeps the order: the second file uses the first.
+// Keeps the order: the last file uses the others.
+#include "shaders/lib/eclipse.glsl"
+//
 #include "shaders/lib/atmosphere.glsl"
 
 // Into a texel of a table.
@@ -39,16 +41,23 @@ inline Atmosphere fromUniforms(const AtmosphereUniforms& u) {
   return a;
 }
 
+inline MoonShadow fromUniforms(const sky::MoonShadow& s) {
+  return {s.toMoon, s.moonRadius, s.perMetre, s.share};
+}
+
 // Lights 2 i and 2 i + 1 of a list; a missing second one is dark.
 inline AtmosphereLights lightPair(std::span<const Light> lights, std::size_t i) {
-  AtmosphereLights p{vec3(0, 0, 1), vec3(0), vec3(0, 0, 1), vec3(0)};
+  AtmosphereLights p{vec3(0, 0, 1), vec3(0), fromUniforms(sky::MoonShadow{}),
+                     vec3(0, 0, 1), vec3(0), fromUniforms(sky::MoonShadow{})};
   if (2 * i < lights.size()) {
     p.direction0 = lights[2 * i].direction;
-    p.illuminance0 = lights[2 * i].illuminance;
+    p.illuminance0 = lights[2 * i].fullIlluminance();
+    p.shadow0 = fromUniforms(lights[2 * i].shadow);
   }
   if (2 * i + 1 < lights.size()) {
     p.direction1 = lights[2 * i + 1].direction;
-    p.illuminance1 = lights[2 * i + 1].illuminance;
+    p.illuminance1 = lights[2 * i + 1].fullIlluminance();
+    p.shadow1 = fromUniforms(lights[2 * i + 1].shadow);
   }
   return p;
 }

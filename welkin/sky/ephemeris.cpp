@@ -11,13 +11,13 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "welkin/core/colour.h"
 #include "welkin/core/units.h"
+#include "welkin/sky/light.h"
 
 namespace welkin::sky {
 namespace {
 
-constexpr double kSunRadiusM = 695.7e6;    // IAU 2015 resolution B3
-constexpr double kMoonRadiusM = 1737.4e3;  // IAU mean radius
 constexpr double kMoonMeanDistanceM = 384.4e6;
 constexpr double kLightSecondsPerAu = ERFA_AULT;
 
@@ -173,10 +173,25 @@ Ephemeris ephemeris(const UtcTime& time, const Observer& observer) {
   e.moonPhaseAngleRad = std::acos(std::clamp(cosPhase, -1.0, 1.0));
   e.moonIlluminatedFraction = 0.5 * (1.0 + cosPhase);
   const double sunAu = e.sun.distanceM / ERFA_DAU, moonRatio = kMoonMeanDistanceM / e.moon.distanceM;
-  e.sunIlluminanceLux = kSunIlluminanceLux / (sunAu * sunAu);
+  e.solarEclipse = solarEclipse(sunM, moonM);
+  e.lunarEclipse = lunarEclipse(e.enuFromCelestial * sunGcrsM, e.enuFromCelestial * moonGcrsM);
+  e.sunIlluminanceLux =
+      kSunIlluminanceLux / (sunAu * sunAu) * static_cast<double>(e.solarEclipse.shadow.share);
   e.moonIlluminanceLux = kFullMoonIlluminanceLux * moonRatio * moonRatio / (sunAu * sunAu) *
                          std::pow(10.0, -0.4 * moonPhaseMagnitudes(e.moonPhaseAngleRad));
+  if (e.lunarEclipse.any()) {
+    const glm::vec3 left = moonlightColour() * e.lunarEclipse.share;
+    e.moonIlluminanceLux *= static_cast<double>(luminanceOf(&left.x));
+  }
   return e;
+}
+
+double darknessElevationDeg(const Ephemeris& e) {
+  // From a hundredth of the sun on the sky darkens to about that of a sun 6 degrees down.
+  constexpr double kDark = -6.0, kFirst = -2.0, kLast = -4.0;
+  const double tens = std::log10(static_cast<double>(e.solarEclipse.shadow.share)),
+               x = std::clamp((tens - kFirst) / (kLast - kFirst), 0.0, 1.0);
+  return e.sun.elevationDeg + std::min(kDark - e.sun.elevationDeg, 0.0) * x * x * (3.0 - 2.0 * x);
 }
 
 }  // namespace welkin::sky

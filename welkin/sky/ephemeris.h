@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "welkin/core/utc_time.h"
+#include "welkin/sky/eclipse.h"
 #include "welkin/sky/planets.h"
 
 namespace welkin::sky {
@@ -40,11 +41,17 @@ struct Ephemeris {
   std::array<Planet, kPlanetCount> planets;  // from the sun outwards: Mercury, Venus, Mars to Uranus
   double moonIlluminatedFraction = 0.0;      // 0 new, 1 full
   double moonPhaseAngleRad = 0.0;            // sun-moon-observer; 0 full, pi new
-  double moonIlluminanceLux = 0.0;           // above the atmosphere, facing the moon
-  double sunIlluminanceLux = 0.0;            // above the atmosphere, facing the sun
+  double moonIlluminanceLux = 0.0;           // above the atmosphere, facing the moon; eclipsed
+  double sunIlluminanceLux = 0.0;            // above the atmosphere, facing the sun; eclipsed
+  SolarEclipse solarEclipse;                 // in east-north-up
+  LunarEclipse lunarEclipse;                 // in east-north-up
   glm::dmat3 enuFromCelestial{1.0};          // directions from the celestial system (GCRS) to east-north-up
 };
 
 Ephemeris ephemeris(const UtcTime& time, const Observer& observer);
+
+// How high the sun would leave the sky about as dark as it is: its elevation, but in a total eclipse of the
+// sun as in deep twilight, with stars.
+double darknessElevationDeg(const Ephemeris& e);
 
 }  // namespace welkin::sky

@@ -35,11 +35,19 @@ double moonDiscMean(double phaseAngleRad) {
 }
 
 Light sunLight(const Ephemeris& e) {
-  return {glm::vec3(e.sun.direction), static_cast<float>(e.sunIlluminanceLux) * sunlightColour()};
+  return {glm::vec3(e.sun.direction), static_cast<float>(e.sunIlluminanceLux) * sunlightColour(),
+          e.solarEclipse.shadow};
 }
 
 Light moonLight(const Ephemeris& e) {
-  return {glm::vec3(e.moon.direction), static_cast<float>(e.moonIlluminanceLux) * moonlightColour()};
+  const glm::vec3 full = fullMoonlight(e);
+  return {glm::vec3(e.moon.direction), e.lunarEclipse.any() ? full * e.lunarEclipse.share : full};
+}
+
+glm::vec3 fullMoonlight(const Ephemeris& e) {
+  if (!e.lunarEclipse.any()) return static_cast<float>(e.moonIlluminanceLux) * moonlightColour();
+  const glm::vec3 left = moonlightColour() * e.lunarEclipse.share;
+  return static_cast<float>(e.moonIlluminanceLux) / luminanceOf(&left.x) * moonlightColour();
 }
 
 }  // namespace welkin::sky

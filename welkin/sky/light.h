@@ -12,7 +12,11 @@ namespace welkin::sky {
 // A distant light: sun or moon.
 struct Light {
   glm::vec3 direction{0, 0, 1};    // towards the light, unit, east-north-up
-  glm::vec3 illuminance{0, 0, 0};  // on a plane facing it at the top of the atmosphere, lux
+  glm::vec3 illuminance{0, 0, 0};  // on a plane facing it at the top of the atmosphere, lux; eclipsed
+  MoonShadow shadow{};             // of the moon on the air about the place, where it is the sun
+
+  // Where no moon is before it.
+  glm::vec3 fullIlluminance() const { return shadow.any() ? illuminance / shadow.share : illuminance; }
 };
 
 // Colours of photometric weight 1: the sun's spectrum outside the atmosphere relative to D65 white, and the
@@ -26,5 +30,7 @@ double moonDiscMean(double phaseAngleRad);
 
 Light sunLight(const Ephemeris& e);
 Light moonLight(const Ephemeris& e);
+// The moon's light where the earth is not before the sun, lux.
+glm::vec3 fullMoonlight(const Ephemeris& e);
 
 }  // namespace welkin::sky

@@ -32,7 +32,8 @@ struct Job {
 
 // Columns to compute: all, or the first half where the picture is its own mirror image.
 int columnsOf(const Job& job, int width) {
-  const bool mirrored = job.lights.illuminance1.y <= 0.0f && job.lights.direction0 == job.direction0;
+  const bool mirrored = job.lights.illuminance1.y <= 0.0f && job.lights.direction0 == job.direction0 &&
+                        job.lights.shadow0.moonRadius <= 0.0f;
   return mirrored ? (width + 1) / 2 : width;
 }
 

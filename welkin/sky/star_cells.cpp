@@ -87,7 +87,7 @@ PlanetSpots planetSpots(const Ephemeris& ephemeris, double eyeM, float pixelRad)
   constexpr double kMarginRad = 0.1;
   constexpr double kByDay = 150.0;  // cd/m2
   const double lowest = -std::sqrt(2.0 * std::max(eyeM, 0.0) / kEarthRadiusM) - kMarginRad;
-  const float others = starlightShare(ephemeris.sun.elevationDeg);
+  const float others = starlightShare(darknessElevationDeg(ephemeris));
   PlanetSpots out;
   for (const Planet& planet : ephemeris.planets) {
     const auto lux = static_cast<float>(starIlluminanceLux(planet.magnitude));
