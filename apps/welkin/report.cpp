@@ -95,8 +95,11 @@ std::string reportJson(const RenderSettings& settings, const RenderReport& r) {
   j["seed"] = s.scene.seed;
   j["metar"] = s.scene.metar ? Json(*s.scene.metar) : Json();
   j["sun"] = bodyJson(s.ephemeris.sun);
+  j["sun"]["obscuration"] = s.ephemeris.solarEclipse.obscuration;
   j["moon"] = bodyJson(s.ephemeris.moon);
   j["moon"]["illuminated_fraction"] = s.ephemeris.moonIlluminatedFraction;
+  j["moon"]["umbral_magnitude"] = s.ephemeris.lunarEclipse.umbralMagnitude;
+  j["moon"]["penumbral_magnitude"] = s.ephemeris.lunarEclipse.penumbralMagnitude;
   j["planets"] = planetsJson(s.ephemeris);
   j["heading_deg"] = s.headingDeg;
   j["visibility_m"] = s.weather.visibilityM;

@@ -28,12 +28,15 @@ int runSunCommand(double latitudeDeg, double longitudeDeg, double altitudeM, con
   if (json) {
     fmt::print(
         "{{\"time\": \"{}\", \"place\": {{\"latitude_deg\": {}, \"longitude_deg\": {}, \"altitude_m\": {}}}, "
-        "\"sun\": {{\"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"illuminance_lux\": {:.1f}}}, "
+        "\"sun\": {{\"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"illuminance_lux\": {:.1f}, "
+        "\"obscuration\": {:.6f}}}, "
         "\"moon\": {{\"azimuth_deg\": {:.6f}, \"elevation_deg\": {:.6f}, \"illuminated_fraction\": {:.6f}, "
-        "\"illuminance_lux\": {:.6f}}}, \"planets\": [",
+        "\"illuminance_lux\": {:.6f}, \"umbral_magnitude\": {:.4f}, \"penumbral_magnitude\": {:.4f}}}, "
+        "\"planets\": [",
         formatUtcTime(time), latitudeDeg, longitudeDeg, altitudeM, e.sun.azimuthDeg, e.sun.elevationDeg,
-        e.sunIlluminanceLux, e.moon.azimuthDeg, e.moon.elevationDeg, e.moonIlluminatedFraction,
-        e.moonIlluminanceLux);
+        e.sunIlluminanceLux, e.solarEclipse.obscuration, e.moon.azimuthDeg, e.moon.elevationDeg,
+        e.moonIlluminatedFraction, e.moonIlluminanceLux, e.lunarEclipse.umbralMagnitude,
+        e.lunarEclipse.penumbralMagnitude);
     const char* before = "";
     for (const sky::Planet& p : e.planets) {
       if (p.body.elevationDeg <= 0.0) continue;
@@ -44,9 +47,16 @@ int runSunCommand(double latitudeDeg, double longitudeDeg, double altitudeM, con
     }
     fmt::print("]}}\n");
   } else {
-    fmt::print("sun     azimuth {:9.4f}  elevation {:8.4f} degrees\n", e.sun.azimuthDeg, e.sun.elevationDeg);
-    fmt::print("moon    azimuth {:9.4f}  elevation {:8.4f} degrees, {:.1f} % lit\n", e.moon.azimuthDeg,
+    fmt::print("sun     azimuth {:9.4f}  elevation {:8.4f} degrees", e.sun.azimuthDeg, e.sun.elevationDeg);
+    if (e.solarEclipse.obscuration > 0.0)
+      fmt::print(", {:.2f} % hidden by the moon", 100.0 * e.solarEclipse.obscuration);
+    fmt::print("\nmoon    azimuth {:9.4f}  elevation {:8.4f} degrees, {:.1f} % lit", e.moon.azimuthDeg,
                e.moon.elevationDeg, 100.0 * e.moonIlluminatedFraction);
+    if (e.lunarEclipse.umbralMagnitude > 0.0)
+      fmt::print(", eclipsed by the earth, magnitude {:.3f}", e.lunarEclipse.umbralMagnitude);
+    else if (e.lunarEclipse.any())
+      fmt::print(", in the earth's penumbra, magnitude {:.3f}", e.lunarEclipse.penumbralMagnitude);
+    fmt::print("\n");
     for (const sky::Planet& p : e.planets)
       if (p.body.elevationDeg > 0.0)
         fmt::print("{:7} azimuth {:9.4f}  elevation {:8.4f} degrees, magnitude {:.1f}\n", p.name,

@@ -70,6 +70,17 @@ class Sun(ProgramTest):
         self.assertAlmostEqual(planets["jupiter"]["magnitude"], -2.7, delta=0.1)
         self.assertIn("jupiter azimuth", self.succeed(*where))
 
+    def test_eclipses(self):
+        total = ("sun", "--place", "42.5987,-5.5671,840", "--time", "2026-08-12T18:29:04Z")
+        self.assertEqual(json.loads(self.succeed(*total, "--json"))["sun"]["obscuration"], 1)
+        self.assertIn("100.00 % hidden by the moon", self.succeed(*total))
+        lunar = ("sun", "--place", "40,-100", "--time", "2025-03-14T06:59:00Z")
+        self.assertAlmostEqual(json.loads(self.succeed(*lunar, "--json"))["moon"]["umbral_magnitude"], 1.178, delta=0.01)
+        self.assertIn("eclipsed by the earth, magnitude 1.17", self.succeed(*lunar))
+        neither = self.succeed("sun", "--place", "40,-100", "--time", "2025-03-20T06:59:00Z")
+        self.assertNotIn("eclipsed", neither)
+        self.assertNotIn("hidden", neither)
+
     def test_negative_places_and_offsets(self):
         here = self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T12:00:00+10:00", "--json")
         self.assertEqual(here, self.succeed("sun", "--place", "-33.9,151.2", "--time", "2026-06-21T02:00:00Z", "--json"))
