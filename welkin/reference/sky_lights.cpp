@@ -12,12 +12,11 @@ namespace {
 
 namespace shared {
 using namespace welkin::glsl;
+#include "shaders/lib/eclipse.glsl"
 #include "shaders/lib/moon.glsl"
 }  // namespace shared
 
-// Limb darkening of the sun, (1 - x^2)^(kLimb / 2) over the disc: D. Hestroffer and C. Magnan 1998,
-// "Wavelength dependency of the Solar limb darkening", at 550 nm.
-constexpr double kLimb = 0.41;
+constexpr double kLimb = static_cast<double>(shared::kSunLimb);
 constexpr double kMostSecond = 0.9;  // chance of the second light: the first may be up where light goes next
 
 double sum(const glm::dvec3& v) {
@@ -27,17 +26,24 @@ double sum(const glm::dvec3& v) {
 }  // namespace
 
 SkyLights::SkyLights(const scene::SkyState& state, const Air& air, const Sphere& earth)
-    : earth_(&earth), sunDirection_(glm::normalize(state.ephemeris.sun.direction)) {
+    : earth_(&earth),
+      sunDirection_(glm::normalize(state.ephemeris.sun.direction)),
+      moonDirection_(glm::normalize(state.ephemeris.moon.direction)),
+      eye_(0.0, 0.0, state.scene.camera.eyeM),
+      moonRadius_(state.ephemeris.moon.angularRadiusRad),
+      lunarEclipse_(state.ephemeris.lunarEclipse) {
   for (std::size_t i = 0; i < state.lights.size(); ++i) {
     const sky::Light& light = state.lights[i];
     const bool isSun = (i == 0) == state.litBySun;
     if (!(light.illuminance.y > 0.0f)) continue;
     const sky::Body& body = isSun ? state.ephemeris.sun : state.ephemeris.moon;
     const glm::dvec3 direction = glm::normalize(glm::dvec3(light.direction));
-    discs_.push_back({isSun, direction, glm::dvec3(light.illuminance), turned(direction, 0.0, 0.0),
-                      turned(direction, 0.0, 0.5 * kPi), body.angularRadiusRad,
-                      isSun ? 1.0 : sky::moonDiscMean(state.ephemeris.moonPhaseAngleRad),
-                      AirToLight(air, earth, direction)});
+    const double radius = body.angularRadiusRad;
+    const glm::dvec3 full(isSun ? light.fullIlluminance() : sky::fullMoonlight(state.ephemeris));
+    const double mean = isSun ? 1.0 : sky::moonDiscMean(state.ephemeris.moonPhaseAngleRad);
+    discs_.push_back({isSun, direction, glm::dvec3(light.fullIlluminance()), turned(direction, 0.0, 0.0),
+                      turned(direction, 0.0, 0.5 * kPi), radius, full / (kPi * radius * radius * mean),
+                      light.shadow, AirToLight(air, earth, direction)});
   }
 }
 
@@ -66,18 +72,29 @@ LightSample SkyLights::sample(const glm::dvec3& p, Random& random) const {
 glm::dvec3 SkyLights::illuminance(const LightSample& light, const glm::dvec3& p) const {
   if (light.disc < 0) return glm::dvec3(0.0);
   const Disc& disc = discs_[static_cast<std::size_t>(light.disc)];
-  return light.weight * disc.illuminance * disc.through.transmittance(p, light.direction);
+  const double share =
+      disc.shadow.any()
+          ? static_cast<double>(sky::sunShareAt(disc.shadow, glm::vec3(disc.direction), glm::vec3(p - eye_)))
+          : 1.0;
+  return light.weight * share * disc.illuminance * disc.through.transmittance(p, light.direction);
 }
 
 glm::dvec3 SkyLights::discs(const glm::dvec3& direction) const {
   glm::dvec3 luminance(0.0);
+  const bool onMoon = glm::length(direction - moonDirection_) < moonRadius_;
   for (const Disc& disc : discs_) {
     const double x = glm::length(direction - disc.direction) / disc.radius;
+    if (disc.isSun && disc.shadow.any()) {
+      if (onMoon) continue;
+      const double hidden = static_cast<double>(shared::sunHidden(disc.shadow.share));
+      luminance +=
+          disc.luminance *
+          (hidden * static_cast<double>(shared::coronaLuminance(static_cast<float>(std::max(x, 1.0)))));
+    }
     if (x >= 1.0) continue;
-    const glm::dvec3 mean = disc.illuminance / (kPi * disc.radius * disc.radius * disc.share);
     const double mu = std::sqrt(1.0 - x * x);
     if (disc.isSun) {
-      luminance += mean * (std::pow(mu, kLimb) * (1.0 + 0.5 * kLimb));
+      luminance += disc.luminance * (std::pow(mu, kLimb) * (1.0 + 0.5 * kLimb));
       continue;
     }
     // Lit by the sun as a dusty sphere (Lommel and Seeliger), with a trace of earthshine.
@@ -85,7 +102,11 @@ glm::dvec3 SkyLights::discs(const glm::dvec3& direction) const {
     const double far = glm::length(across);
     const glm::dvec3 normal = (far > 0.0 ? across / far * x : across) - disc.direction * mu;
     const double mu0 = std::max(glm::dot(normal, sunDirection_), 0.0);
-    luminance += mean * (2.0 * mu0 / (mu0 + mu + 1e-4) + static_cast<double>(shared::kEarthshine));
+    const glm::dvec3 seen =
+        disc.luminance * (2.0 * mu0 / (mu0 + mu + 1e-4) + static_cast<double>(shared::kEarthshine));
+    luminance += lunarEclipse_.any()
+                     ? seen * glm::dvec3(lunarEclipse_.shareAt(glm::vec3(across / disc.radius)))
+                     : seen;
   }
   return luminance;
 }

@@ -36,14 +36,17 @@ class SkyLights {
  private:
   struct Disc {
     bool isSun;
-    glm::dvec3 direction, illuminance;
-    glm::dvec3 east, north;  // unit, across the direction and each other
-    double radius;           // rad
-    double share;            // mean luminance over the disc, of what is drawn on it
+    glm::dvec3 direction, illuminance;  // the sun's not eclipsed
+    glm::dvec3 east, north;             // unit, across the direction and each other
+    double radius;                      // rad
+    glm::dvec3 luminance;               // of what is drawn on the disc shares, not eclipsed, cd/m2
+    sky::MoonShadow shadow;             // on the air about the eye
     AirToLight through;
   };
   const Sphere* earth_;
-  glm::dvec3 sunDirection_{0.0};
+  glm::dvec3 sunDirection_{0.0}, moonDirection_{0.0}, eye_{0.0};
+  double moonRadius_ = 0.0;  // rad
+  sky::LunarEclipse lunarEclipse_;
   std::vector<Disc> discs_;  // that give light, as in state.lights
 };
 

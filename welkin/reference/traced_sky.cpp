@@ -83,8 +83,8 @@ TracedSky::TracedSky(const scene::SkyState& s, const SkySettings& settings)
       peak(dropletPeak(droplets)),
       airglow(s.atmosphere->uniforms().airglow),
       airglowHeight(s.atmosphere->uniforms().airglowAltitudeM - s.atmosphere->uniforms().groundAltitudeM),
-      starlight(s.scene.output.stars ? sky::starlightShare(s.ephemeris.sun.elevationDeg) : 0.0f),
-      galaxyShare(s.scene.output.stars ? sky::milkyWayShare(s.ephemeris.sun.elevationDeg) : 0.0f),
+      starlight(s.scene.output.stars ? sky::starlightShare(sky::darknessElevationDeg(s.ephemeris)) : 0.0f),
+      galaxyShare(s.scene.output.stars ? sky::milkyWayShare(sky::darknessElevationDeg(s.ephemeris)) : 0.0f),
       celestialFromEnu(glm::transpose(s.ephemeris.enuFromCelestial)),
       planets(s.scene.output.stars
                   ? sky::planetSpots(s.ephemeris, s.scene.camera.eyeM, scene::middlePixelRad(projector))
