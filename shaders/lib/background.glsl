@@ -5,6 +5,7 @@
 // the key light that clouds let through to the ground at q, and of the mean light of sky and clouds that it has there. WELKIN_BEYOND: with stars, planets or Milky Way. With lib/air_shadows.glsl before it (WELKIN_AIR_SHADOWS) volumes cast shadows in
 // the air too; so they do where the pass has them from pass/live_air in a vec4 airShadows (WELKIN_AIR_SHADOWS_KNOWN).
 
+#include "lib/eclipse.glsl"
 #include "lib/ground.glsl"
 #include "lib/milky_way.glsl"
 #include "lib/moon.glsl"
@@ -17,6 +18,10 @@ uniform vec3 uSunLuminance;       // mean over the disc, above the atmosphere, c
 uniform float uSunRadius;         // rad
 uniform vec3 uMoonLuminance;      // of what lib/moon.glsl has shares of
 uniform float uMoonRadius;
+uniform float uSunHidden;         // share of the light of the sun's disc that the moon keeps from the eye
+uniform vec4 uEarthShadow;        // where the moon's middle is in it, and its radius, as lib/eclipse.glsl has them; w = 0: outside
+uniform float uEarthOverSun;      // radius of the earth's disc seen from the moon, in the sun's
+uniform vec3 uMoonShare;          // of its light that the earth leaves, mean over the disc
 #ifdef WELKIN_BEYOND
 uniform mat3 uCelestialFromEnu;
 uniform sampler2D uMilkyWay;      // lib/milky_way.glsl
@@ -60,13 +65,37 @@ Disc discAt(vec3 dir, vec3 centre, float radius, float pixelRad) {
   return Disc(min(angle / seen, 1.0), edge / area);
 }
 
-// Limb darkening of the sun in the visible, D. Hestroffer and C. Magnan 1998 (exponent for 550 nm), mean 1 over the disc.
+// What the moon leaves of the share of a pixel that the sun has. Both edges are straight in a pixel: where they face the same way the moon
+// hides the same side that the sun has, where they face each other the other one.
+float sunLeft(vec3 dir, float sun, float pixelRad) {
+  vec3 fromSun = dir - uSunDirection, fromMoon = dir - uMoonDirection;
+  float moon = discCover(length(fromMoon), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
+  float facing = clamp(2.0 * dot(fromSun, fromMoon) / max(length(fromSun) * length(fromMoon), 1e-12), -1.0, 1.0);
+  float across = sun * (1.0 - moon);
+  return facing > 0.0 ? mix(across, max(sun - moon, 0.0), facing) : mix(across, min(sun, 1.0 - moon), -facing);
+}
+
+// The corona about the eclipsed sun, as far as the moon does not hide it.
+vec3 corona(vec3 dir, float pixelRad) {
+  float seen = 1.0 - discCover(length(dir - uMoonDirection), max(uMoonRadius, 0.75 * pixelRad), pixelRad);
+  float r = max(length(dir - uSunDirection) / uSunRadius, 1.0);
+  return uSunLuminance * (uSunHidden * seen * coronaLuminance(r));
+}
+
+// The sun's disc with its limb darkening (lib/eclipse.glsl), mean 1 over it.
 vec3 sunDisc(vec3 dir, float pixelRad) {
   // Where pixels are as large as the disc there is no limb to see, and darkening the widened edge would lose light.
-  float exponent = 0.41 * smoothstep(1.0, 6.0, uSunRadius / pixelRad);
+  float pixels = uSunRadius / pixelRad;
+  float exponent = kSunLimb * smoothstep(1.0, 6.0, pixels);
   Disc disc = discAt(dir, uSunDirection, uSunRadius, pixelRad);
   float limb = pow(max(1.0 - disc.x * disc.x, 0.02), 0.5 * exponent) * (0.5 * exponent + 1.0);
-  return uSunLuminance * (disc.share * limb);
+  if (uSunHidden <= 0.0) return uSunLuminance * (disc.share * limb);
+  float edge = discCover(length(dir - uSunDirection), max(uSunRadius, 0.75 * pixelRad), pixelRad);
+  float left = edge > 0.0 ? sunLeft(dir, edge, pixelRad) / edge : 0.0;
+  vec3 seen = uSunLuminance * (disc.share * limb * left) + corona(dir, pixelRad);
+  // In pixels too large for a crescent all of the disc has its light, and the corona's.
+  vec3 even = uSunLuminance * (disc.share * (1.0 - uSunHidden + uSunHidden * kCoronaShare));
+  return mix(even, seen, smoothstep(0.75, 1.5, pixels));
 }
 
 // The moon's disc: even where pixels are as large as it, so that it keeps its light, with its phase where they are smaller.
@@ -80,7 +109,9 @@ vec3 moonDisc(vec3 dir, float pixelRad) {
   vec2 at = vec2(dot(across, sunwards), dot(across, cross(uMoonDirection, sunwards)));
   float fine = smoothstep(1.0, 2.0, pixels), lit = (1.0 - fine) * disc.share * moonMean(phase);
   if (fine > 0.0) lit += fine * moonSquare(at, 1.0 / pixels, phase);
-  return uMoonLuminance * (lit + disc.share * kEarthshine);
+  vec3 luminance = uMoonLuminance * (lit + disc.share * kEarthshine);
+  if (uEarthShadow.w <= 0.0) return luminance;
+  return luminance * mix(uMoonShare, sunOnMoon(length(vec3(uEarthShadow) + uEarthShadow.w * across), uEarthOverSun), fine);
 }
 
 // Stars, planets and the Milky Way above the atmosphere, behind the moon.

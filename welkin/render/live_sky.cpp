@@ -246,7 +246,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   const sky::Body &sun = state->ephemeris.sun, &moon = state->ephemeris.moon;
   const shading::BackdropTiles tiles = shading::backdropTiles(
       view, target.area.width, target.area.height, state->clouds->earthRadiusM(),
-      {shading::BackdropDisc{glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad)},
+      {shading::BackdropDisc{glm::vec3(sun.direction), shading::drawnSunRadius(state->ephemeris)},
        shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
       state->scene.output.sunDisc);
   tables.makeStars(*state, view.pixelRad);

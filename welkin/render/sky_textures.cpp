@@ -48,7 +48,7 @@ struct Beyond {
 };
 Beyond beyond(const scene::SkyState& state, float pixelRad) {
   if (!state.scene.output.stars) return {};
-  const double sunDeg = state.ephemeris.sun.elevationDeg;
+  const double sunDeg = sky::darknessElevationDeg(state.ephemeris);
   return {sky::starlightShare(sunDeg), sky::milkyWayShare(sunDeg),
           sky::planetSpots(state.ephemeris, state.scene.camera.eyeM, pixelRad)};
 }

@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 #include <string_view>
 
+#include "welkin/core/glsl.h"
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
@@ -16,6 +17,11 @@
 
 namespace welkin::shading {
 namespace {
+
+namespace shared {
+using namespace welkin::glsl;
+#include "shaders/lib/eclipse.glsl"
+}  // namespace shared
 
 // Extent of the table of the clouds' light: up to the highest tops, and some 250 km of the earth's curve.
 constexpr float kKeyLightTopM = 18000.0f;
@@ -97,6 +103,12 @@ void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms&
   }
 }
 
+float drawnSunRadius(const sky::Ephemeris& ephemeris) {
+  const double radii =
+      ephemeris.solarEclipse.obscuration > 0.0 ? static_cast<double>(shared::kCoronaEnd) : 1.0;
+  return static_cast<float>(radii * ephemeris.sun.angularRadiusRad);
+}
+
 Uniforms skyUniforms(const scene::SkyState& state) {
   Uniforms u;
   skyUniforms(state, u);
@@ -138,18 +150,23 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   // the mean.
   const sky::Ephemeris& e = state.ephemeris;
   const sky::Light sun = sky::sunLight(e), moon = sky::moonLight(e);
-  auto discLuminance = [](const sky::Light& light, double radius, double share) {
-    return light.illuminance / static_cast<float>(kPi * radius * radius * share);
+  auto discLuminance = [](const glm::vec3& illuminance, double radius, double share) {
+    return illuminance / static_cast<float>(kPi * radius * radius * share);
   };
   u.put("", "uDiscs", s.output.sunDisc ? 1.0f : 0.0f);
   u.put("", "uCelestialFromEnu", glm::mat3(glm::transpose(e.enuFromCelestial)));
   u.put("", "uSunDirection", sun.direction);
   u.put("", "uSunRadius", static_cast<float>(e.sun.angularRadiusRad));
-  u.put("", "uSunLuminance", discLuminance(sun, e.sun.angularRadiusRad, 1.0));
+  u.put("", "uSunLuminance", discLuminance(sun.fullIlluminance(), e.sun.angularRadiusRad, 1.0));
   u.put("", "uMoonDirection", moon.direction);
   u.put("", "uMoonRadius", static_cast<float>(e.moon.angularRadiusRad));
-  u.put("", "uMoonLuminance",
-        discLuminance(moon, e.moon.angularRadiusRad, sky::moonDiscMean(e.moonPhaseAngleRad)));
+  u.put(
+      "", "uMoonLuminance",
+      discLuminance(sky::fullMoonlight(e), e.moon.angularRadiusRad, sky::moonDiscMean(e.moonPhaseAngleRad)));
+  u.put("", "uSunHidden", shared::sunHidden(e.solarEclipse.shadow.share));
+  u.put("", "uEarthShadow", glm::vec4(e.lunarEclipse.at, e.lunarEclipse.moonRadius));
+  u.put("", "uEarthOverSun", e.lunarEclipse.earthRadius);
+  u.put("", "uMoonShare", e.lunarEclipse.share);
 }
 
 void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table) {

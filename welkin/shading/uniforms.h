@@ -30,6 +30,9 @@ Uniforms cloudUniforms(const scene::SkyState& state);
 // filled before: allocates nothing.
 void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms& uniforms);
 
+// How far from the sun's middle lib/background.glsl draws it, rad: its disc, and in an eclipse its corona.
+float drawnSunRadius(const sky::Ephemeris& ephemeris);
+
 // lib/march.glsl and lib/background.glsl: eye, lights, atmosphere, ground.
 Uniforms skyUniforms(const scene::SkyState& state);
 // The same into a list that was filled before: allocates nothing.

@@ -13,6 +13,7 @@
 #include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/sky/ephemeris.h"
+#include "welkin/sky/light.h"
 
 namespace welkin::render {
 namespace {
@@ -107,6 +108,57 @@ TEST_F(EnvironmentMap, TelephotoOfTheMoonHasItsLightAtAnyPhase) {
                                                           altitude, static_cast<float>(e.moon.direction.z)));
       const double with = lightOf(state, true), without = lightOf(state, false);
       EXPECT_NEAR((with - without) / expected, 1.0, 0.05) << time << ", " << fovDeg;
+    }
+}
+
+// What a picture of a disc has more than one without, in what arrives of the light.
+scene::SkyState telephoto(const char* time, const scene::Place& place, bool ofSun, double fovDeg) {
+  scene::Scene scene = sized(clearScene(20.0), 160, 90);
+  scene.time = parseUtcTime(time);
+  scene.place = place;
+  scene.output.stars = false;
+  const sky::Ephemeris e =
+      sky::ephemeris(scene.time, {place.latitudeDeg, place.longitudeDeg, place.altitudeM});
+  const sky::Body& body = ofSun ? e.sun : e.moon;
+  return scene::buildSky(looking(scene, body.azimuthDeg, body.elevationDeg, fovDeg), 0.0);
+}
+
+glm::vec3 arrivingAt(const scene::SkyState& s, const sky::Light& light) {
+  return light.illuminance *
+         s.atmosphere->transmittanceToSpace(s.scene.place.altitudeM + s.scene.camera.eyeM, light.direction.z);
+}
+
+// Crescents of 61, 20 and 2 % of the disc. The last is in the limb's outermost hundredths, whose darkening
+// ends a little early.
+TEST_F(EnvironmentMap, TelephotoOfTheEclipsedSunHasTheLightThatIsLeft) {
+  for (const char* time : {"2026-08-12T18:00:00Z", "2026-08-12T18:19:00Z", "2026-08-12T18:27:00Z"})
+    for (const double fovDeg : {1.0, 3.0, 40.0}) {
+      const scene::SkyState state = telephoto(time, {42.5987, -5.5671, 840.0}, true, fovDeg);
+      const double expected = luminanceOf(arrivingAt(state, sky::sunLight(state.ephemeris)));
+      const double with = lightOf(state, true), without = lightOf(state, false);
+      const double allowed = state.ephemeris.solarEclipse.obscuration > 0.95 ? 0.14 : 0.06;
+      EXPECT_NEAR((with - without) / expected, 1.0, allowed) << time << ", " << fovDeg;
+    }
+}
+
+// Nothing of the sun is left in totality but its corona.
+TEST_F(EnvironmentMap, TheMoonHidesTheSunWholly) {
+  for (const double fovDeg : {1.0, 3.0, 20.0, 80.0}) {
+    const scene::SkyState state = telephoto("2026-08-12T18:29:04Z", {42.5987, -5.5671, 840.0}, true, fovDeg);
+    const double corona = luminanceOf(arrivingAt(state, sky::sunLight(state.ephemeris)));
+    const double disc = lightOf(state, true) - lightOf(state, false);
+    EXPECT_GT(disc, 0.3 * corona) << fovDeg;
+    EXPECT_LT(disc, 1.5 * corona) << fovDeg;
+  }
+}
+
+TEST_F(EnvironmentMap, TelephotoOfTheEclipsedMoonHasTheLightThatIsLeft) {
+  for (const char* time : {"2025-03-14T04:40:00Z", "2025-03-14T05:50:00Z", "2025-03-14T06:59:00Z"})
+    for (const double fovDeg : {1.0, 20.0}) {
+      const scene::SkyState state = telephoto(time, {40.0, -100.0, 0.0}, false, fovDeg);
+      const double expected = luminanceOf(arrivingAt(state, sky::moonLight(state.ephemeris)));
+      const double with = lightOf(state, true), without = lightOf(state, false);
+      EXPECT_NEAR((with - without) / expected, 1.0, 0.08) << time << ", " << fovDeg;
     }
 }
 
