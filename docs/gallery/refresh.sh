@@ -21,8 +21,9 @@ picture() {
 for scene in clear_noon fair_weather_noon stratocumulus_golden_hour overcast_rain thunderstorm_night; do
   picture "$scene" "$demo/$scene.toml" --size 960x540
 done
-for scene in above_the_clouds sunset cirrus blue_hour starry_night halo glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
+for scene in above_the_clouds sunset cirrus blue_hour starry_night eclipse halo glory fogbow; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture halo_moon "$here/halo.toml" --time 2026-04-01T22:30:00Z --look 165,35 --size 640x360
+picture eclipse_moon "$here/starry_night.toml" --place 40,-100 --time 2025-03-14T06:59:00Z --look 183.8,52.06,1.2 --size 480x270
 picture rain "$here/rain.toml" --size 960x540
 for scene in rainbow rainbow_report; do picture "$scene" "$here/$scene.toml" --size 960x540; done
 picture thunderstorm_day "$demo/thunderstorm_night.toml" --time 2026-09-26T09:00:00Z --size 960x540
