@@ -82,6 +82,11 @@ class Fit(ProgramTest):
         r = self.fit("--balls", "12", "--effort", "0.3", "-o", "c.json", map_name="m.dds")
         self.assertEqual((r["voxel_size_m"], r["first_voxel_m"]), ([1, 1, 1], [0, 0, 0]))
 
+    def test_resume_with_densities_alone(self):
+        first = self.fit("--balls", "10", "--method", "man", "-o", "x.json")["levels"][0]["relative_l2"]
+        better = self.fit("--resume", "x.json", "--method", "weights", "-o", "y.json")["levels"][0]["relative_l2"]
+        self.assertLess(better, 0.99 * first)
+
     def test_resume_goes_on_from_the_same_error(self):
         first = self.fit("--balls", "30", "--method", "weights", "-o", "x.json")["levels"][0]["relative_l2"]
         same = self.fit("--resume", "x.json", "--time-limit", "0", "-o", "y.json")["levels"][0]["relative_l2"]

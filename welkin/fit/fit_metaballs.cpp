@@ -69,7 +69,12 @@ class LevelFit {
   void run() {
     const bool fresh = balls_.empty();
     if (params_.method != FitMethod::kRefined) {
-      if (fresh) begin(pyramid_[0], balls_);
+      if (fresh)
+        begin(pyramid_[0], balls_);
+      else if (params_.method == FitMethod::kMan)
+        scaleWeights(pyramid_[0], balls_);
+      else
+        solveWeights(pyramid_[0], balls_, params_.isSigned, control_.late);
       return;
     }
     std::size_t depth = 0;

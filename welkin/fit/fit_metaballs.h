@@ -7,7 +7,8 @@
 // between rounds in which balls that do little are moved to where the residual is greatest. Large maps begin
 // on coarser copies. `weights` ends after the least squares. `man` is P. Man 2006, "Generating and Real-Time
 // Rendering of Clouds", as far as it went: online k-means of the voxels, R = 2 sigma, and here the one factor
-// for all densities that fits best, since the paper gives none.
+// for all densities that fits best, since the paper gives none. Of given balls these two change the densities
+// alone.
 //
 // The error is that over all voxels of the map, clear ones included: relative L2 = |field - map| / |map|.
 //

@@ -171,6 +171,28 @@ TEST(FitMetaballs, GoesOnFromWhatThereIs) {
   EXPECT_LT(levels[0].relativeL2, before);
 }
 
+// The methods without refinement find new densities for the balls that there are.
+TEST(FitMetaballs, GoesOnWithDensitiesAlone) {
+  const Map map = smallCloud();
+  std::vector<FitLevel> given(1);
+  given[0].count = 30;
+  fitMetaballs(map.density, map.frame, {.method = FitMethod::kWeights}, given);
+  const double best = given[0].relativeL2;
+  for (std::size_t i = 0; i < given[0].balls.size(); ++i) given[0].balls[i].density *= i % 2 == 0 ? 6.0 : 2.0;
+  double before = relativeL2(map, given[0].balls);
+  for (const FitMethod method : {FitMethod::kMan, FitMethod::kWeights}) {
+    std::vector<FitLevel> levels = given;
+    fitMetaballs(map.density, map.frame, {.method = method}, levels);
+    for (std::size_t i = 0; i < levels[0].balls.size(); ++i) {
+      EXPECT_NEAR(levels[0].balls[i].radiusM, given[0].balls[i].radiusM, 1e-9);
+      EXPECT_NEAR(levels[0].balls[i].centreM.x, given[0].balls[i].centreM.x, 1e-9);
+    }
+    EXPECT_LT(levels[0].relativeL2, 0.95 * before);  // by one factor already, by one for each ball still more
+    before = levels[0].relativeL2;
+  }
+  EXPECT_NEAR(before, best, 1e-4);
+}
+
 // Without time every method ends after its first round, with balls that are somewhere near.
 TEST(FitMetaballs, TimeLimitHoldsForWhatFitsBeginWith) {
   const Map map = mansCloud();
