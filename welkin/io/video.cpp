@@ -77,13 +77,13 @@ std::vector<std::string> ffmpegArguments(const VideoSettings& settings, VideoFor
   return a;
 }
 
-// The last few lines of a stream that has been written to its end.
+// The last few lines of a stream that has been written to its end, as one.
 std::string lastLines(std::FILE* file) {
   constexpr std::size_t kLines = 4;
   if (std::fseek(file, 0, SEEK_SET) != 0) return {};
   std::deque<std::string> lines(1);
   for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
-    if (c != '\n') {
+    if (c != '\n' && c != '\r') {
       lines.back() += static_cast<char>(c);
     } else if (!lines.back().empty()) {
       lines.emplace_back();
@@ -92,7 +92,7 @@ std::string lastLines(std::FILE* file) {
   }
   std::string text;
   for (const std::string& line : lines)
-    if (!line.empty()) text += (text.empty() ? "" : "\n  ") + line;
+    if (!line.empty()) text += (text.empty() ? "" : "; ") + line;
   return text;
 }
 
@@ -140,7 +140,7 @@ struct VideoWriter::Impl {
                                 ? "was killed by signal " + std::to_string(WTERMSIG(*status))
                                 : "ended with code " + std::to_string(WEXITSTATUS(*status));
     const std::string words = lastLines(messages.get());
-    fail("ffmpeg " + how + (words.empty() ? "" : ":\n  " + words));
+    fail("ffmpeg " + how + (words.empty() ? "" : ": " + words));
   }
 
   void start(VideoFormat format);

@@ -111,11 +111,7 @@ void TextSetter::value(const ParamInfo& info, std::optional<double>& x) {
 }
 
 void TextSetter::value(const ParamInfo& info, std::optional<std::string>& x) {
-  if (!isTarget(info)) return;
-  if (text_ == "auto")
-    x.reset();
-  else
-    x = std::string(text_);
+  if (isTarget(info)) x = std::string(text_);
 }
 
 void TextSetter::choice(const ParamInfo& info, std::span<const std::string_view> names, int& x) {

@@ -19,7 +19,7 @@ std::string choiceProblem(const ParamInfo& info, std::span<const std::string_vie
                           std::string_view found);
 
 // Sets the parameter at `path` ("seed", "place.latitude_deg") from text. Numbers are decimal; vectors are
-// "x,y,z"; optional parameters take "auto" for absent. Throws ParameterError, what() being the sentence of
+// "x,y,z"; optional numbers take "auto" for absent. Throws ParameterError, what() being the sentence of
 // what is wrong; where the text stood is for the caller to add. The path must exist.
 template <class T>
 void setParam(T& params, std::string_view path, std::string_view text);

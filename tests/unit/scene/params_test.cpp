@@ -43,6 +43,8 @@ TEST(SetParam, SetsEachType) {
   EXPECT_FALSE(s.output.sunDisc);
   EXPECT_EQ(s.metar, "METAR LSZH 211720Z CAVOK");
   setParam(s, "output.exposure_ev", "auto");
+  setParam(s, "metar", "auto");
+  EXPECT_EQ(s.metar, "auto");  // a text is the text
   EXPECT_FALSE(s.output.exposureEv.has_value());
 }
 

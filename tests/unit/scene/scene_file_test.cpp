@@ -135,6 +135,14 @@ TEST(SceneFile, WrongTypesSayExpectedAndFound) {
             "s.toml:2:10: albedo: expected a list of three numbers, found a list");
   EXPECT_EQ(problemOf("time = 5").what,
             "s.toml:1:8: time: expected a date and time such as 2026-06-21T18:30:00Z, found a whole number");
+  EXPECT_EQ(problemOf("time = 2026-06-21").what,
+            "s.toml:1:8: time: expected a date and time such as 2026-06-21T18:30:00Z, found a date without a "
+            "time");
+  EXPECT_EQ(problemOf("time = 12:00:00").what,
+            "s.toml:1:8: time: expected a date and time such as 2026-06-21T18:30:00Z, found a time without a "
+            "date");
+  EXPECT_EQ(problemOf("seed = 2026-06-21T18:30:00Z").what,
+            "s.toml:1:8: seed: expected a whole number, found a date and time");
   EXPECT_EQ(problemOf("[output]\nsun_disc = 1").what,
             "s.toml:2:12: sun_disc: expected true or false, found a whole number");
 }
