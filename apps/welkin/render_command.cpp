@@ -89,8 +89,7 @@ class Sequence {
     report_.frames.push_back({path, state.time, exposureEv, msSince(begin)});
   }
 
-  // The sky of a frame. The camera stands still: a heading that follows the light is the one of the first
-  // frame.
+  // The sky of a frame.
   scene::SkyState stateOf(std::int64_t i, ProgressLine& progress) {
     const scene::Scene& s = settings_.scene;
     if (i == 0) {
@@ -99,10 +98,7 @@ class Sequence {
       return report_.state;
     }
     const double t = s.atS + static_cast<double>(i) * s.output.speed / s.output.fps;
-    scene::SkyState state = scene::buildSky(s, t, &report_.state);
-    state.headingDeg = report_.state.headingDeg;
-    state.scene.camera.headingDeg = state.headingDeg;
-    return state;
+    return scene::buildSky(s, t, &report_.state);
   }
 
   const RenderSettings& settings_;

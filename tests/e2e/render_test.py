@@ -117,6 +117,13 @@ class Determinism(ProgramTest):
 
 
 class Frames(ProgramTest):
+    def test_heading_is_the_same_at_all_instants(self):
+        self.succeed("render", *CUMULUS, *TINY, "-o", "f_%d.png", "--frames", "2", "--fps", "1", "--speed", "7200", "--report", "f.json")
+        self.succeed("render", *CUMULUS, *TINY, "-o", "still.png", "--at", "7200", "--report", "s.json")
+        headings = [json.loads((self.folder / name).read_text())["heading_deg"] for name in ("f.json", "s.json")]
+        self.assertEqual(*headings)
+        self.assertEqual((self.folder / "f_1.png").read_bytes(), (self.folder / "still.png").read_bytes())
+
     def test_each_frame_is_the_still_of_its_instant(self):
         look = ["--look", "180,15"]
         self.succeed("render", *CUMULUS, *TINY, *look, "-o", "f_%03d.png", "--frames", "3", "--fps", "2", "--speed", "120",

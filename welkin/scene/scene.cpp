@@ -25,12 +25,13 @@ void describe(Place& p, ParamVisitor& v) {
 
 void describe(Camera& c, ParamVisitor& v) {
   v.value({"eye_m", "m", "height of the eye above the ground", 0.1, 20000}, c.eyeM);
-  v.value({"heading_deg", "deg",
-           "direction of view clockwise from north; absent: 60 deg right of the brighter of sun and moon, "
-           "north for "
-           "projections of the whole sky",
-           -360, 360},
-          c.headingDeg);
+  v.value(
+      {"heading_deg", "deg",
+       "direction of view clockwise from north; absent: 60 deg right of the sun, or of the moon where it is "
+       "up and the sun 7 deg below the horizon, as they stand at `time`; north for projections of the "
+       "whole sky",
+       -360, 360},
+      c.headingDeg);
   v.value({"pitch_deg", "deg", "direction of view above the horizon, of a perspective picture", -90, 90},
           c.pitchDeg);
   v.value({"fov_deg", "deg", "field of view across the width of a perspective picture", 1, 170}, c.fovDeg);

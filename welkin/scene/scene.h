@@ -34,11 +34,11 @@ enum class Projection { kPerspective, kFisheye, kEquirect, kCubemap };
 
 // Where the eye is and what it sees. The eye stands over the place.
 struct Camera {
-  double eyeM = 2.0;  // above the ground
-  std::optional<double>
-      headingDeg;          // clockwise from north; absent: 60 degrees right of the brighter of sun and moon
-  double pitchDeg = 12.0;  // above the horizon
-  double fovDeg = 70.0;    // across the width of a perspective picture
+  double eyeM = 2.0;                 // above the ground
+  std::optional<double> headingDeg;  // clockwise from north; absent: 60 degrees right of the brighter of sun
+                                     // and moon at the scene's time
+  double pitchDeg = 12.0;            // above the horizon
+  double fovDeg = 70.0;              // across the width of a perspective picture
   Projection projection = Projection::kPerspective;
   bool operator==(const Camera&) const = default;
 };

@@ -308,11 +308,15 @@ std::vector<std::string> textureWarnings(const Scene& scene) {
   return warnings;
 }
 
-double headingOf(const SkyState& s) {
-  if (s.scene.camera.headingDeg) return *s.scene.camera.headingDeg;
-  if (s.scene.camera.projection != Projection::kPerspective) return 0.0;
-  const glm::vec3 d = s.lights[0].direction;
-  return std::fmod(degrees(std::atan2(d.x, d.y)) + 60.0 + 360.0, 360.0);
+// Of the camera, which stands still: whatever the instant, it looks towards the light of the scene's time.
+// The moon counts where it is up; else the sky is brightest over the sun.
+double headingOf(const Scene& scene) {
+  if (scene.camera.headingDeg) return *scene.camera.headingDeg;
+  if (scene.camera.projection != Projection::kPerspective) return 0.0;
+  const SkyLights at = lightsAt(scene, 0.0);
+  const bool byMoon = !at.bySun && at.ephemeris.moon.elevationDeg > 0.0;
+  const sky::Body& light = byMoon ? at.ephemeris.moon : at.ephemeris.sun;
+  return std::fmod(light.azimuthDeg + 60.0, 360.0);
 }
 
 }  // namespace
@@ -400,7 +404,7 @@ void moveSky(SkyState& s, double secondsAfter) {
   s.ephemeris = lights.ephemeris;
   s.lights = lights.lights;
   s.litBySun = lights.bySun;
-  s.headingDeg = headingOf(s);
+  s.headingDeg = headingOf(s.scene);
   s.clearSky = clearSkyKeys(s);
   s.ambient = ambientLight(s);
 }

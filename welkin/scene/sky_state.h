@@ -86,7 +86,7 @@ struct SkyState {
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
   LayerCover skyCover;                 // the whole sky
   std::vector<std::string> warnings;   // files that could not be used, covers that cannot be met
-  double headingDeg = 0.0;             // the camera's, with "absent" resolved
+  double headingDeg = 0.0;             // the camera's, with "absent" resolved, the same at all instants
 };
 
 // The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that
