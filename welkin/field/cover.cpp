@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::size_t kGrain = 64;  // directions that a thread takes at a time
 
-// The ends of the bisection: cloud wherever the layer reaches, and none at all.
-constexpr float kLeastThreshold = -4.0f, kGreatestThreshold = 4.5f;
-constexpr int kBisections = 11;  // to 0.004 deviations
+constexpr float kGreatestThreshold = 4.5f;  // no cloud at all
+constexpr int kBisections = 11;             // to 0.004 deviations
 constexpr float kThickening = 1.5f;
 constexpr int kMostThickenings = 6;
 

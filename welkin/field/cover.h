@@ -36,6 +36,9 @@ std::vector<float> layerOpticalDepths(const CloudField& field, const CoverView& 
 // Fraction of directions in which the optical depth makes cover.
 double coverOf(std::span<const float> opticalDepths);
 
+// Where calibrated() ends for layers that cannot cover what is asked: cloud wherever the layer reaches.
+inline constexpr float kLeastThreshold = -4.0f;
+
 // The layer's threshold at which its own measured cover is `fraction`, by bisection (cover falls as the
 // threshold rises). Where the layer is too thin to reach it, its extinction is raised. The other layers do
 // not matter.

@@ -11,6 +11,7 @@
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
 #include "welkin/field/metaball_motion.h"
+#include "welkin/scene/cover_warnings.h"
 #include "welkin/scene/cumulus_library.h"
 #include "welkin/scene/scene.h"
 
@@ -140,9 +141,7 @@ std::vector<std::string> MetaballSky::warnings() const {
     const weather::Layer& layer = filled.layer.layer();
     if (const std::optional<double> most = filled.layer.mostOktas())
       all.push_back(
-          "the " + std::string(kEnumNames<weather::Genus>[static_cast<std::size_t>(layer.genus)]) + " from " +
-          numberText(layer.baseM) + " to " + numberText(layer.topM) + " m covers " +
-          numberText(std::round(10.0 * *most) / 10.0) + " oktas and not " + numberText(layer.oktas) +
+          coversLess(layer, *most, layer.oktas) +
           ": more metaballs are too many; a thicker or a lower layer covers more, and so do volumes");
   }
   return all;

@@ -217,11 +217,22 @@ Volume<float> domePattern(const Sheet& sheet, std::uint64_t seed) {
 
 namespace {
 
+// What observers call cloud hides at least that.
+const double kVisible = -std::expm1(-kCoverDepth);
+
 // The least excess over the threshold that observers call cloud. Whoever asks for a sheet that hides less
 // than that gets what it has above the threshold.
 double visibleExcess(const field::Condensation& law) {
-  const double visible = -std::expm1(-kCoverDepth);
-  return law.bias > visible ? law.excessOf(visible) : 0.0;
+  return law.bias > kVisible ? law.excessOf(kVisible) : 0.0;
+}
+
+// The law but for the threshold of a sheet with oktas.
+field::Condensation lawOf(const Sheet& sheet) {
+  const double density = sheet.density.value_or(field::CondensationParams::kDensity);
+  field::Condensation law = sheet.exponent ? field::thesisShader(sheet.cutoff, *sheet.exponent, 1.0)
+                                           : field::thesisTexture(sheet.cutoff, density);
+  law.bias = sheet.bias;
+  return law;
 }
 
 // The share of a pattern that exceeds a value.
@@ -237,10 +248,7 @@ double shareAbove(const field::PatternQuantiles& pattern, double value) {
 }  // namespace
 
 field::Condensation condensationOf(const Sheet& sheet, std::span<const float> pattern) {
-  const double density = sheet.density.value_or(field::CondensationParams::kDensity);
-  field::Condensation law = sheet.exponent ? field::thesisShader(sheet.cutoff, *sheet.exponent, 1.0)
-                                           : field::thesisTexture(sheet.cutoff, density);
-  law.bias = sheet.bias;
+  field::Condensation law = lawOf(sheet);
   if (!sheet.oktas) return law;
   if (*sheet.oktas <= 0.0) {
     law.threshold = 1.0;  // many texels may have the greatest value: not even they
@@ -270,7 +278,12 @@ glm::dvec2 windPathM(const Sheet& sheet, double secondsAfter) {
          windPath(sheet.drift.drift, sheet.drift.windSeed, sheet.windFromDeg, secondsAfter);
 }
 
+bool isOneVeil(const Sheet& sheet) {
+  return visibleExcess(lawOf(sheet)) >= 1.0;
+}
+
 double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter) {
+  if (sheet.bias <= kVisible) return 0.0;
   // The law goes by the described pattern; what is counted is the one of the instant.
   std::vector<float> described, shown;
   if (sheet.pattern == SheetPattern::kOctaves) {

@@ -115,6 +115,10 @@ field::Condensation lawAt(const Sheet& sheet, const field::Condensation& law,
 // Where the air of a sheet has gone to since the scene's time, east and north.
 glm::dvec2 windPathM(const Sheet& sheet, double secondsAfter);
 
+// Whether its cloud hides so little for each unit of the pattern that all of the pattern, gaps included,
+// hides about as much.
+bool isOneVeil(const Sheet& sheet);
+
 // The share of the whole pattern, its file's where it has one, that is cloud to an observer: what it covers
 // of the sky, but for chance.
 double deliveredCover(const Sheet& sheet, std::uint64_t seed, double secondsAfter = 0.0);

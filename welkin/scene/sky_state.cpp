@@ -11,6 +11,7 @@
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
+#include "welkin/scene/cover_warnings.h"
 #include "welkin/scene/hazy_deck.h"
 #include "welkin/scene/sheet_texture.h"
 #include "welkin/sky/light.h"
@@ -384,10 +385,12 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
   s.metaballs = std::make_shared<MetaballSky>(scene, s.weather, s.clouds->earthRadiusM());
   DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter, s.metaballs.get());
+  s.warnings = textureWarnings(scene);
+  for (std::string& warning : coverWarnings(scene, s.weather, s.calibration, cover))
+    s.warnings.push_back(std::move(warning));
   s.cover = std::move(cover.layers);
   s.sheetCover = std::move(cover.sheets);
   s.skyCover = cover.sky;
-  s.warnings = textureWarnings(scene);
   for (std::string& warning : s.metaballs->warnings()) s.warnings.push_back(std::move(warning));
   s.atmosphere = std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
                                                    scene.place.altitudeM, glm::vec3(scene.ground.albedo));
