@@ -99,11 +99,6 @@ double spacingOf(const weather::Layer& layer) {
 
 }  // namespace
 
-bool isIce(weather::Genus genus) {
-  return genus == weather::Genus::kCirrus || genus == weather::Genus::kCirrocumulus ||
-         genus == weather::Genus::kCirrostratus;
-}
-
 double dropletDiameterUm(const weather::Weather& weather) {
   constexpr double kWithoutWater = 16.0;
   double diameter = 0.0, weight = 1e-9;

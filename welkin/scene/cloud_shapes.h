@@ -13,9 +13,6 @@ namespace welkin::scene {
 // that of half cover, to be calibrated.
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter);
 
-// Whether the layer is made of ice.
-bool isIce(weather::Genus genus);
-
 // The diameter of droplets whose phase function all layers of water have: their mean, weighted by cover;
 // micrometres.
 double dropletDiameterUm(const weather::Weather& weather);

@@ -15,25 +15,32 @@
 namespace welkin::scene {
 namespace {
 
-// Layers with what is typical of their genus, before the reader sets what the file says. Mistakes are left
-// for the reader.
-std::vector<weather::Layer> typicalLayers(const toml::table& root, double latitudeDeg) {
+// What is typical of the genus, before the reader sets what the file says. Other mistakes are left for the
+// reader; to it a radius of ice would be a key that is not known.
+weather::Layer typicalLayer(const toml::table& table, double latitudeDeg, const std::string& file) {
+  const auto& names = kEnumNames<weather::Genus>;
+  const auto name = table["genus"].value<std::string>();
+  const auto it = name ? std::find(names.begin(), names.end(), *name) : names.end();
+  const auto genus =
+      it == names.end() ? weather::Layer{}.genus : static_cast<weather::Genus>(it - names.begin());
+  weather::Layer layer = weather::typicalLayer(genus, latitudeDeg);
+  layer.oktas = weather::typicalOktas(genus);
+  if (const auto base = table["base_m"].value<double>()) layer.topM = *base + (layer.topM - layer.baseM);
+  const toml::node* radius = table.get("effective_radius_um");
+  if (radius != nullptr && isIce(genus))
+    throw errorAt(*radius, file,
+                  "effective_radius_um is of droplets, and " + *name + " is of ice; expected none");
+  return layer;
+}
+
+std::vector<weather::Layer> typicalLayers(const toml::table& root, double latitudeDeg,
+                                          const std::string& file) {
   std::vector<weather::Layer> layers;
   const toml::array* list = root["layer"].as_array();
   if (list == nullptr) return layers;
-  const auto& names = kEnumNames<weather::Genus>;
   for (const toml::node& element : *list) {
-    weather::Layer layer;
-    if (const toml::table* table = element.as_table()) {
-      const auto name = (*table)["genus"].value<std::string>();
-      const auto it = name ? std::find(names.begin(), names.end(), *name) : names.end();
-      const int genus =
-          it == names.end() ? static_cast<int>(layer.genus) : static_cast<int>(it - names.begin());
-      layer = weather::typicalLayer(static_cast<weather::Genus>(genus), latitudeDeg);
-      if (const auto base = (*table)["base_m"].value<double>())
-        layer.topM = *base + (layer.topM - layer.baseM);
-    }
-    layers.push_back(layer);
+    const toml::table* table = element.as_table();
+    layers.push_back(table ? typicalLayer(*table, latitudeDeg, file) : weather::Layer{});
   }
   return layers;
 }
@@ -172,7 +179,7 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   SceneFile file;
   Scene& scene = file.scene;
   if (!latitudeDeg) latitudeDeg = root["place"]["latitude_deg"].value<double>();
-  scene.layers = typicalLayers(root, latitudeDeg.value_or(scene.place.latitudeDeg));
+  scene.layers = typicalLayers(root, latitudeDeg.value_or(scene.place.latitudeDeg), name);
   const std::optional<Theme> start = themeIn(root, name, theme, file.themeFile);
   if (start) apply(*start, scene);
   scene.sheets = startingSheets(root, name);
@@ -208,7 +215,7 @@ SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeD
 std::vector<ParamDoc> documentSceneFile() {
   std::vector<ParamDoc> rows = documentParams<Scene>();
   for (ParamDoc& row : rows)
-    if (row.group == "[[layer]]" && row.key != "genus" && row.key != "oktas") row.defaultValue = "typical";
+    if (row.group == "[[layer]]" && row.key != "genus") row.defaultValue = "typical";
   return rows;
 }
 

@@ -22,6 +22,8 @@ struct Habit {
   double extinctionPerM;
 };
 
+constexpr double kOfIce = Layer{}.effectiveRadiusUm;  // crystals have none
+
 Habit habitOf(Genus genus) {
   switch (genus) {
     // OPAC, continental clean cumulus 5.8 um, .068/m; maritime 12.7 um, .052/m.
@@ -51,13 +53,13 @@ Habit habitOf(Genus genus) {
     // Salby .5/km; the fibres are denser than the mean over their height, and optical depth about 1 is below
     // ISCCP's 3.6.
     case Genus::kCirrus:
-      return {40.0, 0.001};
-    // Supercooled droplets and small crystals in a thin sheet: optical depth 0.5.
+      return {kOfIce, 0.001};
+    // Small crystals in a thin sheet: optical depth 0.5.
     case Genus::kCirrocumulus:
-      return {20.0, 0.0018};
+      return {kOfIce, 0.0018};
     // Deep and even: optical depth 1.2, halo and disc of the sun remain visible.
     case Genus::kCirrostratus:
-      return {35.0, 0.0006};
+      return {kOfIce, 0.0006};
     // OPAC: 10.7 um, .0081/m, a visibility of 370 m.
     case Genus::kFog:
       return {10.7, 0.0081};
@@ -76,6 +78,31 @@ double congestusDepthM(double latitudeDeg) {
   // Tops near the melting level and the stable layer there (Johnson et al., Trimodal characteristics of
   // tropical convection, 1999): 5 km in the tropics, lower with the tropopause.
   return byLatitude(latitudeDeg, 4000.0, 3500.0, 2200.0);
+}
+
+// From what the Atlas calls them: stratus, nimbostratus, altostratus and cirrostratus are layers or veils
+// that are seen to cover all of the sky or most of it, stratocumulus and altocumulus patches or layers of
+// elements side by side, cumulus, cumulonimbus and cirrus detached clouds, cirrocumulus a small patch.
+double typicalOktas(Genus genus) {
+  switch (genus) {
+    case Genus::kStratus:
+    case Genus::kNimbostratus:
+    case Genus::kAltostratus:
+    case Genus::kCirrostratus:
+    case Genus::kFog:
+      return 8.0;
+    case Genus::kStratocumulus:
+      return 6.0;
+    case Genus::kAltocumulus:
+      return 5.0;
+    case Genus::kCirrocumulus:
+      return 2.0;
+    case Genus::kCumulus:
+    case Genus::kCumulonimbus:
+    case Genus::kCirrus:
+      break;
+  }
+  return 3.5;
 }
 
 Layer typicalLayer(Genus genus, double latitudeDeg) {

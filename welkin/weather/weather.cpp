@@ -11,8 +11,13 @@ namespace {
 
 constexpr double kMaxHeightM = 25000.0;
 constexpr double kMostRainMmPerH = 300.0;
+constexpr double kLeastRadiusUm = 2.5, kMostRadiusUm = 25.0;  // of optics/phase.h
 
 }  // namespace
+
+bool isIce(Genus genus) {
+  return genus == Genus::kCirrus || genus == Genus::kCirrocumulus || genus == Genus::kCirrostratus;
+}
 
 void describe(Layer& layer, ParamVisitor& v) {
   v.choice({"genus", "", "kind of cloud"}, layer.genus);
@@ -21,8 +26,13 @@ void describe(Layer& layer, ParamVisitor& v) {
           layer.topM);
   v.value({"oktas", "okta", "eighths of the sky that the layer covers, whatever lies below it", 0.0, 8.0},
           layer.oktas);
-  v.value({"effective_radius_um", "um", "effective radius of the droplets or ice crystals", 1.0, 200.0},
-          layer.effectiveRadiusUm);
+  if (!isIce(layer.genus))
+    v.value(
+        {"effective_radius_um", "um",
+         "effective radius of the droplets, of which all layers share the mean, weighted by their oktas; not "
+         "of cirrus, cirrocumulus and cirrostratus, which are of ice",
+         kLeastRadiusUm, kMostRadiusUm},
+        layer.effectiveRadiusUm);
   v.value({"extinction_per_m", "1/m", "extinction of light inside the cloud", 0.0, 1.0},
           layer.extinctionPerM);
   v.value({"wind_from_deg", "deg", "direction the layer's wind comes from, clockwise from north", 0.0, 360.0},

@@ -39,13 +39,16 @@ enum class Technique {
   kMetaballs,  // clouds of metaballs (scene::MetaballLayer)
 };
 
+// Whether clouds of the genus are made of ice crystals.
+bool isIce(Genus genus);
+
 // One layer of cloud.
 struct Layer {
   Genus genus = Genus::kCumulus;
   double baseM = 1000.0;  // height of the base above the ground
   double topM = 2000.0;   // height of the highest tops above the ground; > baseM
   double oktas = 3.5;     // the layer's own cover of the sky hemisphere, 0 to 8, whatever lies below it
-  double effectiveRadiusUm = 8.0;  // droplets or ice crystals
+  double effectiveRadiusUm = 8.0;  // of droplets; without effect where the genus is of ice
   double extinctionPerM = 0.05;    // typical extinction in the body of the cloud at visible wavelengths, 1/m
   double windFromDeg = 270.0;      // true direction the layer's wind comes from
   double windSpeedMps = 8.0;
@@ -55,6 +58,7 @@ struct Layer {
 
   bool operator==(const Layer&) const = default;
 };
+// Of a layer of ice without the droplets' radius.
 void describe(Layer& layer, ParamVisitor& v);
 
 // Throws ParameterError when the values contradict one another (a top that is not above its base) or are out
@@ -62,8 +66,10 @@ void describe(Layer& layer, ParamVisitor& v);
 void validate(const Layer& layer);
 
 // A layer of the genus as it is most often met at the latitude (degrees, either sign): heights, extinction,
-// size of droplets or crystals, and wind are typical, the cover is the struct's default. See genus.h.
+// size of droplets, and wind are typical, the cover is the struct's default. See genus.h.
 Layer typicalLayer(Genus genus, double latitudeDeg);
+// Its cover where nothing is said about it.
+double typicalOktas(Genus genus);
 
 // Most layers that a Weather has.
 inline constexpr std::size_t kMaxLayers = 8;

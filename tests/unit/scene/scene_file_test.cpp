@@ -227,12 +227,26 @@ top_m = 1000
   const weather::Layer stratus = weather::typicalLayer(weather::Genus::kStratus, 10);
   EXPECT_EQ(s.layers[1].baseM, 500);
   EXPECT_DOUBLE_EQ(s.layers[1].topM, 500 + stratus.topM - stratus.baseM);
-  EXPECT_EQ(s.layers[1].oktas, stratus.oktas);
+  EXPECT_EQ(s.layers[1].oktas, 8);
+  EXPECT_EQ(s.layers[2].oktas, 3.5);
   EXPECT_EQ(s.layers[2].topM, 1000);
   // Another latitude given from outside wins over the file's.
   const Scene polar =
       parseScene("[place]\nlatitude_deg = 10\n[[layer]]\ngenus = \"cirrus\"", "s", 80.0).scene;
   EXPECT_EQ(polar.layers[0].baseM, weather::typicalLayer(weather::Genus::kCirrus, 80).baseM);
+}
+
+TEST(SceneFile, RadiiAreOfDroplets) {
+  EXPECT_EQ(problemOf("[[layer]]\ngenus = \"cirrus\"\neffective_radius_um = 20\n").what,
+            "s.toml:3:23: effective_radius_um is of droplets, and cirrus is of ice; expected none");
+  EXPECT_EQ(problemOf("[[layer]]\neffective_radius_um = 60\n").what,
+            "s.toml:2:23: effective_radius_um is 60; expected 2.5 to 25 um");
+  EXPECT_EQ(parseScene("[[layer]]\neffective_radius_um = 20\n", "s").scene.layers[0].effectiveRadiusUm, 20.0);
+  // What is written reads back, ice too.
+  for (const std::string_view genus : kEnumNames<weather::Genus>) {
+    const Scene s = parseScene("[[layer]]\ngenus = \"" + std::string(genus) + "\"\n", "s.toml").scene;
+    EXPECT_EQ(parseScene(sceneToToml(s), "again.toml").scene, s) << genus;
+  }
 }
 
 TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
