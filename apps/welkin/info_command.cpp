@@ -177,7 +177,6 @@ int runInfo(const InfoArgs& args) {
   }
   if (extension == ".toml") {
     const scene::Scene s = scene::readSceneFile(args.file).scene;
-    scene::validate(s);
     fmt::print("{}", args.json ? scene::toJson(s) + "\n" : scene::sceneToToml(s));
     return 0;
   }

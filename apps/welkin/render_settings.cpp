@@ -222,7 +222,8 @@ RenderSettings renderSettings(const RenderArgs& a) {
   // The place first: what is typical of a layer in the file depends on the latitude.
   Scene flagged;
   if (a.place) setPlace(flagged, "--place", *a.place);
-  bool sizeGiven = a.size.has_value();
+  bool widthGiven = a.size.has_value(), heightGiven = widthGiven;
+  std::optional<ParseError> misfit;  // in the scene file, for flags to mend
   std::optional<std::string> themeFile;
   if (a.theme && std::filesystem::path(*a.theme).extension() == ".toml") themeFile = *a.theme;
   const std::string kind = a.scene ? io::lowerExtension(*a.scene) : "";
@@ -235,9 +236,11 @@ RenderSettings renderSettings(const RenderArgs& a) {
     r.scene.metaballs.push_back({.file = *a.scene});
   } else if (a.scene) {
     if (a.theme) themeOfFlag(*a.theme);  // so that a wrong name is the flag's mistake
-    scene::SceneFile file = scene::readSceneFile(
+    scene::SceneFile file = scene::readSceneDraft(
         *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt, a.theme);
-    sizeGiven = sizeGiven || file.gives("output.width") || file.gives("output.height");
+    widthGiven = widthGiven || file.gives("output.width");
+    heightGiven = heightGiven || file.gives("output.height");
+    misfit = file.misfit;
     r.scene = std::move(file.scene);
     if (file.themeFile) themeFile = file.themeFile;
   } else if (a.theme) {
@@ -254,14 +257,10 @@ RenderSettings renderSettings(const RenderArgs& a) {
     setList(s, "--look", *a.look, ',', "HEADING,PITCH or HEADING,PITCH,FOV",
             {"camera.heading_deg", "camera.pitch_deg", "camera.fov_deg"}, 2);
   set(s, "--projection", "camera.projection", a.projection);
-  if (a.size) {
+  if (a.size)
     setList(s, "--size", *a.size, 'x', "WIDTHxHEIGHT, 1280x720 for instance",
             {"output.width", "output.height"}, 2);
-  } else if (!sizeGiven) {
-    const scene::PictureSize size = scene::naturalSize(s.camera.projection);
-    s.output.width = size.width;
-    s.output.height = size.height;
-  }
+  scene::setNaturalSize(s, widthGiven, heightGiven);
   if (metaballs) frameCloud(s, a.eye.has_value(), a.look.has_value());
   set(s, "--technique", "technique", a.technique);
   set(s, "--metaballs-as", "metaballs_as", a.metaballsAs);
@@ -275,10 +274,8 @@ RenderSettings renderSettings(const RenderArgs& a) {
   try {
     scene::validate(s);
   } catch (const ParameterError& e) {
-    const bool byFlags =
-        a.size || a.projection || a.time || a.at || a.frames || a.fps || a.speed || a.metaballsAs;
-    if (byFlags || !a.scene) throw UsageError(e.what());
-    throw ParameterError(*a.scene + ": " + e.what());
+    if (misfit) throw ParseError(*misfit);
+    throw UsageError(e.what());
   }
   checkSlab(r, a);
   if (s.output.frames > 1 && !r.numbered && !r.video)

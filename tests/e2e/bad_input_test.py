@@ -40,6 +40,25 @@ class SceneFiles(ProgramTest):
     def test_reports(self):
         self.refuse('seed = 2\nmetar = "LSZH 211220Z Q10"\n', "2:9: metar: column 14 of the report: 'Q10' is not")
 
+    def test_ice_has_no_radius(self):
+        self.refuse('[[layer]]\ngenus = "cirrus"\neffective_radius_um = 40\n', "3:23: effective_radius_um is of droplets, and cirrus is of ice")
+
+    def test_what_does_not_fit_together(self):
+        layers = "[[layer]]\n" * 9
+        self.refuse(layers, "9:1: there are 9 layers; expected at most 8")
+        self.fail_with(1, "s.toml:9:1: there are 9 layers", "info", "s.toml")
+        # Not the fault of flags that have nothing to do with it.
+        self.fail_with(1, "s.toml:9:1: there are 9 layers", "render", "s.toml", "-o", "x.png", "--time", "2026-06-21T12:00Z")
+        self.refuse('[camera]\nprojection = "equirect"\n[output]\nwidth = 64\nheight = 64\n',
+                    "4:9: size 64x64 does not fit an equirect; expected a picture twice as wide as high, 128x64 for instance")
+
+    def test_flags_mend_what_does_not_fit(self):
+        self.write("s.toml", '[camera]\nprojection = "cubemap"\n[output]\nwidth = 64\nheight = 64\nquality = "low"\n')
+        self.fail_with(1, "s.toml:4:9: size 64x64 does not fit a cubemap", "render", "s.toml", "-o", "x.png")
+        self.fail_with(1, "s.toml:4:9: size 64x64 does not fit a cubemap", "render", "s.toml", "-o", "x.png", "--seed", "3")
+        self.succeed("render", "s.toml", "-o", "x.png", "--size", "48x8")
+        self.succeed("render", "s.toml", "-o", "x.png", "--projection", "fisheye")
+
     def test_files_that_it_names(self):
         self.refuse('theme = "none.toml"\n', "1:9: theme: none.toml: cannot be opened: No such file")
         self.refuse('[sky_box]\nstrip = "none.png"\n', "2:9: strip: there is no file none.png")
@@ -78,6 +97,11 @@ class Flags(ProgramTest):
         self.refuse("size 16384x16384 has 268435456 pixels; expected at most 134217728", "--size", "16384x16384")
         self.refuse("--size: expected WIDTHxHEIGHT", "--size", "big")
         self.refuse("does not fit a cubemap; expected six square faces", "--size", "96x54", "--projection", "cubemap")
+        self.refuse("does not fit an equirect; expected a picture twice as wide as high, 640x320 for instance", "--size", "320x320",
+                    "--projection", "equirect")
+
+    def test_auto_is_no_report(self):
+        self.fail_with(1, "METAR", "render", "-o", "x.png", "--metar", "auto")
 
     def test_renderers(self):
         self.refuse("expected gpu or reference", "--renderer", "cpu")
@@ -95,7 +119,7 @@ class Flags(ProgramTest):
         self.fail_with(2, "the last picture is of 2101-01-01T00:00:0", "render", *last, "-o", "x_%d.png", "--frames", "30",
                        "--fps", "24", "--speed", "1")
         self.write("s.toml", 'time = "2100-12-31T23:59:59Z"\nat_s = 60\n')
-        self.fail_with(1, "s.toml: the picture is of 2101-01-01T00:00:59Z", "render", "s.toml", "-o", "x.png")
+        self.fail_with(1, "s.toml:2:8: the picture is of 2101-01-01T00:00:59Z", "render", "s.toml", "-o", "x.png")
 
     def test_frames_need_a_number(self):
         self.refuse("x.png: 10 frames need a place for their number", "--frames", "10")

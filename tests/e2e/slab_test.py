@@ -63,6 +63,9 @@ class Slab(ProgramTest):
         for flag, value in (("--metar", CUMULUS[1]), ("--at", "60"), ("--theme", "thesis-few"), ("--look", "0,10"), ("--size", "64x36"),
                             ("--projection", "fisheye"), ("--quality", "low"), ("--exposure", "15"), ("--droplets", "mie")):
             self.fail_with(2, flag + " is for pictures of skies", *slab, "--renderer", "reference", "--report", "r.json", flag, value)
+        self.write("dark.toml", "[slab]\noptical_depth = 1\n[ground]\nalbedo = [0.3, 0.3, 0.3]\n")
+        self.fail_with(1, "dark.toml:4:10: albedo in [ground] has no effect beside a slab; did you mean ground_albedo in [slab]?",
+                       "render", "dark.toml", "--renderer", "reference", "--report", "r.json")
         self.fail_with(2, "--noise: expected a number", *slab, "--renderer", "reference", "--noise", "0")
         self.write("slab.toml", STEPS.replace("[slab]", "[slab]\noptical_depth = 1"))
         self.fail_with(1, "slab has an optical_depth and columns", *slab, "--renderer", "reference", "--report", "r.json")

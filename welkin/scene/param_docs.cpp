@@ -117,7 +117,7 @@ std::string plainTable(std::span<const ParamDoc> rows, int columns) {
 namespace {
 
 bool isWord(const ParamDoc& r) {
-  return r.defaultValue == "absent" || r.defaultValue == "typical";
+  return r.defaultValue == "absent" || r.defaultValue == "typical" || r.defaultValue == "of the projection";
 }
 
 }  // namespace

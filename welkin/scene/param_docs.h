@@ -58,10 +58,10 @@ class DocVisitor final : public ParamVisitor {
 
 }  // namespace detail
 
-// One row for each parameter of T, in the order of its description, with the defaults that stand in T.
+// One row for each parameter of T, in the order of its description, with the defaults that stand in T or the
+// values of `params`; of a list as of one element of defaults.
 template <class T>
-std::vector<ParamDoc> documentParams() {
-  T params{};
+std::vector<ParamDoc> documentParams(T params = {}) {
   detail::DocVisitor visitor;
   describe(params, visitor);
   return visitor.rows;

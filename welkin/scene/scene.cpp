@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/scene/scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
-#include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
 #include "welkin/core/random.h"
 
 namespace welkin::scene {
@@ -44,9 +47,18 @@ void describe(Camera& c, ParamVisitor& v) {
 }
 
 void describe(Output& o, ParamVisitor& v) {
-  v.value({"width", "pixels", "width of the picture; width times height is at most 134217728", 1, kMaxSide},
+  v.value({"width", "pixels",
+           "width of the picture; width times height is at most 134217728; left out: 1280 in perspective, "
+           "else it "
+           "follows from the height: as much (fisheye), twice (equirect) or six times (cubemap) that",
+           1, kMaxSide},
           o.width);
-  v.value({"height", "pixels", "height of the picture", 1, kMaxSide}, o.height);
+  v.value({"height", "pixels",
+           "height of the picture; left out: 720 in perspective, else it follows from the width; without "
+           "either a "
+           "fisheye is 1024x1024, an equirect 2048x1024, a cubemap 3072x512",
+           1, kMaxSide},
+          o.height);
   v.choice({"quality", "", "how finely the clouds are marched"}, o.quality);
   v.value({"exposure_ev", "EV",
            "exposure value at ISO 100 of PNG and video; absent: automatic, from each picture", -16, 24},
@@ -132,54 +144,71 @@ void describe(Scene& s, ParamVisitor& v) {
 
 namespace {
 
+void require(bool good, std::vector<std::string> keys, const std::string& problem) {
+  if (!good) throw MisfitError(std::move(keys), problem);
+}
+
 // Of the first and the last picture, which at_s and speed may lead far from `time`.
 void validateTimes(const Scene& s) {
   const double lastS = static_cast<double>(s.output.frames - 1) * s.output.speed / s.output.fps;
-  for (const double afterS : {0.0, lastS}) {
+  const auto requireYear = [&](double afterS, std::vector<std::string> keys, const std::string& picture) {
     const UtcTime t = addSeconds(s.time, s.atS + afterS);
-    if (t.year < 1900 || t.year > 2100)
-      throw ParameterError(std::string(afterS == 0.0 ? "the picture" : "the last picture") + " is of " +
-                           formatUtcTime(t) + "; expected the years 1900 to 2100");
-  }
+    require(t.year >= 1900 && t.year <= 2100, std::move(keys),
+            picture + " is of " + formatUtcTime(t) + "; expected the years 1900 to 2100");
+  };
+  requireYear(0.0, {"at_s", "time"}, "the picture");
+  requireYear(lastS, {"output.speed", "output.frames", "output.fps", "at_s", "time"}, "the last picture");
+}
+
+void validateSize(const Scene& s) {
+  const std::int64_t w = s.output.width, h = s.output.height;
+  const std::string size = std::to_string(w) + "x" + std::to_string(h);
+  const std::vector<std::string> keys = {"output.width", "output.height", "camera.projection"};
+  require(w * h <= kMaxPixels, keys,
+          "size " + size + " has " + std::to_string(w * h) + " pixels; expected at most " +
+              std::to_string(kMaxPixels));
+  require(std::max(w, h) <= static_cast<std::int64_t>(kMaxSide), keys,
+          "size " + size + " is too large; expected at most " + numberText(kMaxSide) + " pixels a side");
+  const auto example = [h](int wide) {
+    return std::to_string(wide * h) + "x" + std::to_string(h) + " for instance";
+  };
+  require(s.camera.projection != Projection::kCubemap || w == 6 * h, keys,
+          "size " + size + " does not fit a cubemap; expected six square faces side by side, " + example(6));
+  require(
+      s.camera.projection != Projection::kEquirect || w == 2 * h, keys,
+      "size " + size + " does not fit an equirect; expected a picture twice as wide as high, " + example(2));
+}
+
+// Not more than `most` elements in the list `key`, which are called so.
+void requireAtMost(std::size_t most, std::size_t count, const std::string& key, const std::string& called) {
+  require(count <= most, {key + "[" + std::to_string(most) + "]", key, "theme"},
+          "there are " + std::to_string(count) + " " + called + "; expected at most " + std::to_string(most));
 }
 
 }  // namespace
 
 void validate(const Scene& s) {
-  const std::int64_t w = s.output.width, h = s.output.height;
-  const std::string size = std::to_string(w) + "x" + std::to_string(h);
-  if (w * h > kMaxPixels)
-    throw ParameterError("size " + size + " has " + std::to_string(w * h) + " pixels; expected at most " +
-                         std::to_string(kMaxPixels));
-  if (s.camera.projection == Projection::kCubemap && w != 6 * h)
-    throw ParameterError("size " + size +
-                         " does not fit a cubemap; expected six square faces side by side, " +
-                         std::to_string(6 * h) + "x" + std::to_string(h) + " for instance");
-  if (s.layers.size() > weather::kMaxLayers)
-    throw ParameterError("there are " + std::to_string(s.layers.size()) + " layers; expected at most " +
-                         std::to_string(weather::kMaxLayers));
+  validateSize(s);
+  requireAtMost(weather::kMaxLayers, s.layers.size(), "layer", "layers");
   for (const weather::Layer& layer : s.layers) weather::validate(layer);
-  if (s.sheets.size() > kMaxSheets)
-    throw ParameterError("there are " + std::to_string(s.sheets.size()) + " sheets; expected at most " +
-                         std::to_string(kMaxSheets));
+  requireAtMost(kMaxSheets, s.sheets.size(), "sheet", "sheets");
   for (const Sheet& sheet : s.sheets) validate(sheet);
-  if (s.metaballs.size() > kMaxMetaballs)
-    throw ParameterError("there are " + std::to_string(s.metaballs.size()) +
-                         " clouds of metaballs; expected at most " + std::to_string(kMaxMetaballs));
-  for (const MetaballCloud& cloud : s.metaballs) {
+  requireAtMost(kMaxMetaballs, s.metaballs.size(), "metaballs", "clouds of metaballs");
+  for (std::size_t i = 0; i < s.metaballs.size(); ++i) {
+    const MetaballCloud& cloud = s.metaballs[i];
     validate(cloud);
-    if (s.metaballsAs == MetaballRender::kVolume &&
-        (cloud.phase != MetaballPhase::kDroplets || cloud.albedo != 1.0))
-      throw ParameterError(
-          "clouds of metaballs that are marched scatter all light as droplets do; expected phase droplets "
-          "and "
-          "albedo 1, or metaballs_as splats");
+    const std::string key = "metaballs[" + std::to_string(i) + "].";
+    const bool asDroplets = cloud.phase == MetaballPhase::kDroplets && cloud.albedo == 1.0;
+    require(s.metaballsAs != MetaballRender::kVolume || asDroplets,
+            {key + (cloud.phase != MetaballPhase::kDroplets ? "phase" : "albedo"), "metaballs_as"},
+            "clouds of metaballs that are marched scatter all light as droplets do; expected phase droplets "
+            "and albedo 1, or metaballs_as splats");
   }
   validateTimes(s);
   validate(s.skyBox);
   validate(s.slab);
-  if (s.output.flare > 0.0 && s.camera.projection != Projection::kPerspective)
-    throw ParameterError("output.flare is a lens's; expected projection perspective");
+  require(s.output.flare <= 0.0 || s.camera.projection == Projection::kPerspective, {"output.flare"},
+          "output.flare is a lens's; expected projection perspective");
 }
 
 bool drawsSheets(Technique technique) {
@@ -247,6 +276,19 @@ PictureSize naturalSize(Projection projection) {
       break;
   }
   return {1280, 720};
+}
+
+void setNaturalSize(Scene& s, bool widthGiven, bool heightGiven) {
+  const PictureSize natural = naturalSize(s.camera.projection);
+  const bool wholeSky = s.camera.projection != Projection::kPerspective;
+  const double shape = static_cast<double>(natural.width) / static_cast<double>(natural.height);
+  std::int64_t &width = s.output.width, &height = s.output.height;
+  if (!widthGiven)
+    width = wholeSky && heightGiven ? std::llround(static_cast<double>(height) * shape) : natural.width;
+  if (!heightGiven)
+    height = wholeSky && widthGiven
+                 ? std::max<std::int64_t>(std::llround(static_cast<double>(width) / shape), 1)
+                 : natural.height;
 }
 
 }  // namespace welkin::scene

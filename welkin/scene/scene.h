@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/params.h"
 #include "welkin/optics/phase.h"
 #include "welkin/scene/drift.h"
@@ -97,8 +99,21 @@ struct Scene {
 };
 void describe(Scene& s, ParamVisitor& v);
 
-// What no single range can say: the number of pixels, a cubemap's 6:1, tops above bases, the years of all
-// pictures. Throws ParameterError.
+// Values that do not fit together, with the keys that they may stand under, the likeliest first:
+// "output.width", "layer[8]".
+class MisfitError : public ParameterError {
+ public:
+  MisfitError(std::vector<std::string> keys, const std::string& message)
+      : ParameterError(message), keys_(std::move(keys)) {}
+  const std::vector<std::string>& keys() const { return keys_; }
+
+ private:
+  std::vector<std::string> keys_;
+};
+
+// What no single range can say: the number of pixels, a cubemap's 6:1 and an equirect's 2:1, tops above
+// bases, the years of all pictures. Throws MisfitError, and ParameterError for what is wrong in one layer,
+// sheet or cloud, in the sky box or the slab.
 void validate(const Scene& s);
 
 // The technique that draws a layer of the scene's weather: its own, or the scene's.
@@ -121,6 +136,9 @@ struct PictureSize {
   std::int64_t width = 0, height = 0;  // pixels
 };
 PictureSize naturalSize(Projection projection);
+// Gives the scene's picture that size, or, where one side was asked for, the other: in a projection of the
+// whole sky it follows from that.
+void setNaturalSize(Scene& s, bool widthGiven, bool heightGiven);
 
 }  // namespace welkin::scene
 

@@ -134,25 +134,32 @@ void validateTable(const T& group, const toml::table& root, std::string_view key
   }
 }
 
-// A slab stands in the place of the whole sky: what describes that would be without effect.
-void refuseSky(const Scene& scene, const toml::table& root, const std::string& name) {
-  const auto refuse = [&](bool refused, std::string_view key, const std::string& called) {
-    const toml::node* node = root.get(key);
-    if (refused && node != nullptr)
-      throw errorAt(*node, name, called + " has no effect beside a slab; expected one of the two");
+// A slab stands in the place of the whole sky: what describes that would be without effect. What a file gives
+// with its default, as `welkin info` prints it, asks for nothing.
+void refuseSky(const SceneFile& file, const toml::table& root, const std::string& name) {
+  const auto refuse = [&](const std::string& path, const std::string& called, const std::string& hint) {
+    if (const toml::node* node = root.at_path(path).node())
+      throw errorAt(*node, name, called + " has no effect beside a slab; " + hint);
   };
-  refuse(true, "metar", "metar");
-  refuse(true, "theme", "theme");
-  refuse(!scene.layers.empty(), "layer", "[[layer]]");
-  refuse(!scene.sheets.empty(), "sheet", "[[sheet]]");
-  refuse(!scene.metaballs.empty(), "metaballs", "[[metaballs]]");
-  // With their defaults, as `welkin info` prints them, they ask for nothing.
-  refuse(scene.camera != Camera{}, "camera", "[camera]");
-  refuse(scene.skyBox != SkyBox{}, "sky_box", "[sky_box]");
+  const std::string oneOfTwo = "expected one of the two";
+  refuse("theme", "theme", oneOfTwo);
+  const Scene& scene = file.scene;
+  if (!scene.layers.empty()) refuse("layer", "[[layer]]", oneOfTwo);
+  if (!scene.sheets.empty()) refuse("sheet", "[[sheet]]", oneOfTwo);
+  if (!scene.metaballs.empty()) refuse("metaballs", "[[metaballs]]", oneOfTwo);
+  const std::vector<ParamDoc> rows = documentParams(scene), defaults = documentParams<Scene>();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ParamDoc& row = rows[i];
+    const bool ofSlab = row.group == "[slab]" || row.path == "seed";
+    if (!ofSlab && row.defaultValue != defaults[i].defaultValue && file.gives(row.path))
+      refuse(row.path, row.key + (row.group.empty() ? "" : " in " + row.group),
+             row.path == "ground.albedo" ? "did you mean ground_albedo in [slab]?" : oneOfTwo);
+  }
 }
 
 // At the key of [slab] that the message begins with, or at what makes a slab of it.
-void validateSlab(const Scene& scene, const toml::table& root, const std::string& name) {
+void validateSlab(const SceneFile& file, const toml::table& root, const std::string& name) {
+  const Scene& scene = file.scene;
   try {
     validate(scene.slab);
   } catch (const ParameterError& e) {
@@ -161,19 +168,27 @@ void validateSlab(const Scene& scene, const toml::table& root, const std::string
     if (at == nullptr) at = root.get(scene.slab.opticalDepth ? "slab" : "slab_column");
     throw errorAt(*at, name, e.what());
   }
-  if (!scene.slab.empty()) return refuseSky(scene, root, name);
+  if (!scene.slab.empty()) return refuseSky(file, root, name);
   if (scene.slab != Slab{})
     throw errorAt(*root.get("slab"), name,
                   "slab has no optical_depth; expected one, or columns: [[slab_column]]");
 }
 
-}  // namespace
-
-bool SceneFile::gives(std::string_view path) const {
-  return std::find(given.begin(), given.end(), path) != given.end();
+// What does not fit together in the whole of the file.
+std::optional<ParseError> misfitIn(const Scene& scene, const toml::table& root, const std::string& name) {
+  try {
+    validate(scene);
+  } catch (const MisfitError& e) {
+    for (const std::string& key : e.keys())
+      if (const toml::node* node = root.at_path(key).node()) return errorAt(*node, name, e.what());
+    return ParseError(name, 0, 0, e.what());
+  } catch (const ParameterError& e) {
+    return ParseError(name, 0, 0, e.what());
+  }
+  return std::nullopt;
 }
 
-SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg,
+SceneFile parseDraft(std::string_view text, const std::string& name, std::optional<double> latitudeDeg,
                      const std::optional<std::string>& theme) {
   const toml::table root = parseToml(text, name);
   SceneFile file;
@@ -187,6 +202,7 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   describe(scene, reader);
   reader.finish();
   file.given = std::move(reader.given);
+  setNaturalSize(scene, file.gives("output.width"), file.gives("output.height"));
 
   scene.theme.reset();
   validateReport(scene, root, name);
@@ -194,28 +210,52 @@ SceneFile parseScene(std::string_view text, const std::string& name, std::option
   finishSheets(scene.sheets, root, name);
   validateEach(scene.metaballs, root, "metaballs", name);
   validateTable(scene.skyBox, root, "sky_box", name);
-  validateSlab(scene, root, name);
+  validateSlab(file, root, name);
   for (MetaballCloud& cloud : scene.metaballs)
     if (!cloud.file.empty()) cloud.file = besideFile(name, cloud.file);
   if (start) scene.sheets.insert(scene.sheets.begin(), start->sheets.begin(), start->sheets.end());
   SkyBox& box = scene.skyBox;
   for (auto* path : {&box.strip, &box.px, &box.nx, &box.py, &box.ny, &box.pz, &box.nz})
     if (*path) *path = besideFile(name, **path);
+  file.misfit = misfitIn(scene, root, name);
+  return file;
+}
+
+SceneFile fitting(SceneFile file) {
+  if (file.misfit) throw ParseError(*file.misfit);
+  return file;
+}
+
+}  // namespace
+
+bool SceneFile::gives(std::string_view path) const {
+  return std::find(given.begin(), given.end(), path) != given.end();
+}
+
+SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg,
+                     const std::optional<std::string>& theme) {
+  return fitting(parseDraft(text, name, latitudeDeg, theme));
+}
+
+SceneFile readSceneDraft(const std::string& path, std::optional<double> latitudeDeg,
+                         const std::optional<std::string>& theme) {
+  const std::string text = readText(path, "a scene file");
+  SceneFile file = parseDraft(text, path, latitudeDeg, theme);
+  requireFiles(parseToml(text, path), path);
   return file;
 }
 
 SceneFile readSceneFile(const std::string& path, std::optional<double> latitudeDeg,
                         const std::optional<std::string>& theme) {
-  const std::string text = readText(path, "a scene file");
-  SceneFile file = parseScene(text, path, latitudeDeg, theme);
-  requireFiles(parseToml(text, path), path);
-  return file;
+  return fitting(readSceneDraft(path, latitudeDeg, theme));
 }
 
 std::vector<ParamDoc> documentSceneFile() {
   std::vector<ParamDoc> rows = documentParams<Scene>();
-  for (ParamDoc& row : rows)
+  for (ParamDoc& row : rows) {
     if (row.group == "[[layer]]" && row.key != "genus") row.defaultValue = "typical";
+    if (row.path == "output.width" || row.path == "output.height") row.defaultValue = "of the projection";
+  }
   return rows;
 }
 

@@ -165,7 +165,14 @@ TEST(Validate, RefusesWhatNoSingleRangeCan) {
   EXPECT_THROW(validate(s), ParameterError);
   s.output.height = 8192;
   EXPECT_NO_THROW(validate(s));
+  for (const Projection p : {Projection::kFisheye, Projection::kEquirect}) {
+    s.camera.projection = p;
+    EXPECT_NO_THROW(validate(s));
+  }
   s.camera.projection = Projection::kCubemap;
+  EXPECT_THROW(validate(s), ParameterError);
+  s.camera.projection = Projection::kEquirect;
+  s.output.width = s.output.height;
   EXPECT_THROW(validate(s), ParameterError);
   for (const Projection p :
        {Projection::kPerspective, Projection::kFisheye, Projection::kEquirect, Projection::kCubemap}) {

@@ -69,9 +69,28 @@ width = 640
   EXPECT_EQ(s.camera.headingDeg, 270.0);
   EXPECT_FALSE(s.output.sunDisc);
   EXPECT_EQ(s.output.width, 640);
-  EXPECT_EQ(s.output.height, Output{}.height);
+  EXPECT_EQ(s.output.height, 320);  // half of that
   EXPECT_TRUE(f.gives("output.width"));
   EXPECT_FALSE(f.gives("output.height"));
+}
+
+TEST(SceneFile, PicturesHaveTheSizeOfTheirProjection) {
+  const auto size = [](const std::string& camera, const std::string& output = "") {
+    const Scene s =
+        parseScene("[camera]\nprojection = \"" + camera + "\"\n[output]\n" + output, "s.toml").scene;
+    EXPECT_EQ(parseScene(sceneToToml(s), "again.toml").scene, s);
+    return std::to_string(s.output.width) + "x" + std::to_string(s.output.height);
+  };
+  EXPECT_EQ(size("perspective"), "1280x720");
+  EXPECT_EQ(size("fisheye"), "1024x1024");
+  EXPECT_EQ(size("equirect"), "2048x1024");
+  EXPECT_EQ(size("cubemap"), "3072x512");
+  EXPECT_EQ(size("perspective", "width = 640\n"), "640x720");
+  EXPECT_EQ(size("fisheye", "height = 300\n"), "300x300");
+  EXPECT_EQ(size("equirect", "width = 640\n"), "640x320");
+  EXPECT_EQ(size("cubemap", "height = 64\n"), "384x64");
+  EXPECT_EQ(problemOf("[camera]\nprojection = \"cubemap\"\n[output]\nheight = 4000\n").what,
+            "s.toml:4:10: size 24000x4000 is too large; expected at most 16384 pixels a side");
 }
 
 TEST(SceneFile, TimeMayHaveAnOffsetOrBeText) {
@@ -276,13 +295,62 @@ TEST(SceneFile, KeysAtOddsAreNamedWithTheirPlace) {
          "droplet_diameter_um is 45; expected at most 40 um with phase mie");
   expect("seed = 2\n[slab]\nthickness_m = 300\n", "2:1",
          "slab has no optical_depth; expected one, or columns");
-  for (const char* sky :
-       {"[[layer]]\n", "[[sheet]]\n", "[camera]\npitch_deg = 1\n", "[sky_box]\nstrip = \"a.png\"\n"})
+  for (const char* sky : {"[[layer]]\n", "[[sheet]]\n"})
     expect("[slab]\noptical_depth = 2\n" + std::string(sky), "3:1", "has no effect beside a slab");
+  expect("[slab]\noptical_depth = 2\n[camera]\npitch_deg = 1\n", "4:13",
+         "pitch_deg in [camera] has no effect");
+  expect("[slab]\noptical_depth = 2\n[sky_box]\nstrip = \"a.png\"\n", "4:9",
+         "strip in [sky_box] has no effect");
+  expect("[slab]\noptical_depth = 2\n[ground]\nalbedo = [0.2, 0.2, 0.2]\n", "4:10",
+         "albedo in [ground] has no effect beside a slab; did you mean ground_albedo in [slab]?");
+  expect("[slab]\noptical_depth = 2\n[atmosphere]\nozone_du = 250\n", "4:12", "no effect beside a slab");
+  expect("[slab]\noptical_depth = 2\n[place]\nlatitude_deg = 10\n", "4:16", "no effect beside a slab");
+  expect("[slab]\noptical_depth = 2\n[drift]\nwind_deg = 10\n", "4:12", "no effect beside a slab");
+  expect("[slab]\noptical_depth = 2\n[output]\nflare = 0.1\n", "4:9", "no effect beside a slab");
+  expect("visibility_m = 900\n[slab]\noptical_depth = 2\n", "1:16",
+         "visibility_m has no effect beside a slab");
+  // With their defaults they ask for nothing, so that what is written reads back.
+  const Scene slab = parseScene("seed = 7\n[slab]\noptical_depth = 2\n", "s.toml").scene;
+  EXPECT_EQ(parseScene(sceneToToml(slab), "again.toml").scene, slab);
   expect("theme = \"thesis-few\"\n[[slab_column]]\n", "1:9", "theme has no effect beside a slab");
   expect("[[slab_column]]\n[slab]\nphase = \"mie\"\ndroplet_diameter_um = 45\n", "4:23", "at most 40");
   expect("seed = 2\nmetar = \"LSZH 211220Z 24008KT Q10\"\n", "2:9", "metar: column 22 of the report: 'Q10'");
   expect("metar = \"LSZH 211220Z NIL\"\n", "1:9", "NIL");
+}
+
+// What no table can tell alone.
+TEST(SceneFile, WhatDoesNotFitTogetherHasAPlace) {
+  const auto many = [](int count, const std::string& table) {
+    std::string text = "seed = 2\n";
+    for (int i = 0; i < count; ++i) text += table + "\n";
+    return text;
+  };
+  EXPECT_EQ(problemOf(many(9, "[[layer]]")).what, "s.toml:10:1: there are 9 layers; expected at most 8");
+  EXPECT_EQ(problemOf(many(9, "[[sheet]]")).what, "s.toml:10:1: there are 9 sheets; expected at most 8");
+  EXPECT_EQ(problemOf("theme = \"thesis-combined\"\n" + many(6, "[[sheet]]")).what,
+            "s.toml:3:1: there are 9 sheets; expected at most 8");
+  EXPECT_TRUE(problemOf("[camera]\nprojection = \"cubemap\"\n[output]\nwidth = 600\nheight = 120\n")
+                  .what.starts_with("s.toml:4:9: size 600x120 does not fit a cubemap"));
+  EXPECT_TRUE(problemOf("[output]\nwidth = 16384\nheight = 16384\n").what.starts_with("s.toml:2:9: size "));
+  EXPECT_EQ(problemOf("[output]\nflare = 0.01\n[camera]\nprojection = \"fisheye\"\n").what,
+            "s.toml:2:9: output.flare is a lens's; expected projection perspective");
+  const std::string cloud = "metaballs_as = \"volume\"\n[[metaballs]]\nfile = \"a.json\"\n[[metaballs]]\n";
+  EXPECT_TRUE(
+      problemOf(cloud + "file = \"a.json\"\nalbedo = 0.9\n").what.starts_with("s.toml:6:10: clouds of"));
+  EXPECT_TRUE(problemOf("time = \"2100-12-31T23:59:59Z\"\nat_s = 60\n").what.starts_with("s.toml:2:8: the "));
+  EXPECT_TRUE(problemOf("time = \"2100-12-31T23:59:59Z\"\n[output]\nframes = 99\n")
+                  .what.starts_with("s.toml:3:10: the last picture is of 2101"));
+}
+
+TEST(SceneFile, DraftsNoteWhatDoesNotFitTogether) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "welkin_draft_test.toml";
+  std::ofstream(path) << "[camera]\nprojection = \"equirect\"\n[output]\nwidth = 64\nheight = 64\n";
+  const SceneFile draft = readSceneDraft(path.string());
+  ASSERT_TRUE(draft.misfit);
+  EXPECT_EQ(draft.misfit->line(), 4);
+  EXPECT_EQ(draft.scene.output.height, 64);
+  EXPECT_THROW(readSceneFile(path.string()), ParseError);
+  std::filesystem::remove(path);
 }
 
 TEST(SceneFile, MissingFilesAndFoldersAreIoErrors) {
