@@ -3,7 +3,7 @@
 // made from it, of each layer and of the whole sky, in the mean over several seeds. Prints one JSON line a
 // report, then a summary.
 //
-//   cover_bench [EVERY [SEEDS]]      EVERY n-th report (1), SEEDS seeds (8)
+//   cover_bench [EVERY [SEEDS [AT_S]]]      EVERY n-th report (1), SEEDS seeds (8), AT_S after its time (0)
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -69,11 +69,11 @@ double requestedOktas(const Case& c, std::size_t i) {
   return i < c.weather.layers.size() ? c.weather.layers[i].oktas : c.weather.requestedOktas;
 }
 
-void measure(Case& c, int seed, const std::shared_ptr<const field::CloudNoise>& noise) {
+void measure(Case& c, int seed, double atS, const std::shared_ptr<const field::CloudNoise>& noise) {
   c.scene.seed = seed;
-  const auto calibration = scene::calibrateClouds(c.scene, c.weather, noise);
-  const auto clouds = scene::cloudsAt(c.scene, c.weather, calibration, noise, 0.0);
-  const scene::DeliveredCover cover = scene::measureCover(c.scene, c.weather, clouds, 0.0);
+  const auto calibration = scene::calibrationAt(c.scene, c.weather, noise, atS);
+  const auto clouds = scene::cloudsAt(c.scene, c.weather, calibration, noise, atS);
+  const scene::DeliveredCover cover = scene::measureCover(c.scene, c.weather, clouds, atS);
   for (std::size_t i = 0; i < c.sums.size(); ++i) {
     const double delivered =
         i < cover.layers.size() ? cover.layers[i].deliveredOktas : cover.sky.deliveredOktas;
@@ -87,6 +87,7 @@ void measure(Case& c, int seed, const std::shared_ptr<const field::CloudNoise>& 
 int main(int argc, char** argv) {
   const int every = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 1;
   const int seeds = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 8;
+  const double atS = argc > 3 ? std::atof(argv[3]) : 0.0;
   std::vector<Case> cases;
   try {
     cases = readCases(every);
@@ -102,7 +103,7 @@ int main(int argc, char** argv) {
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(seed));
     parallelFor(cases.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) measure(cases[i], seed, noise);
+      for (std::size_t i = begin; i < end; ++i) measure(cases[i], seed, atS, noise);
     });
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -147,6 +148,7 @@ int main(int argc, char** argv) {
   summary["with_cloud"] = cloudy;
   summary["with_cloud_delivered"] = cloudyDelivered;
   summary["seeds"] = seeds;
+  summary["at_s"] = atS;
   summary["worst_mean_off_oktas"] = std::round(worstMean * 100) / 100;
   summary["numbers"] = singleAll;
   summary["numbers_within_for_every_seed"] = single;

@@ -95,16 +95,19 @@ class Sequence {
     if (i == 0) {
       report_.state = scene::buildSky(s, s.atS);
       for (const std::string& warning : report_.state.warnings) progress.warn(warning);
+      last_ = report_.state;
       return report_.state;
     }
     const double t = s.atS + static_cast<double>(i) * s.output.speed / s.output.fps;
-    return scene::buildSky(s, t, &report_.state);
+    scene::moveSky(last_, t);
+    return last_;
   }
 
   const RenderSettings& settings_;
   const std::int64_t frames_;
   PictureWriter writer_;
   RenderReport report_;
+  scene::SkyState last_;  // whose key instants serve the next frame
 };
 
 }  // namespace

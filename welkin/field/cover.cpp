@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
-#include <utility>
+#include <span>
 
 #include "welkin/core/parallel.h"
 #include "welkin/core/units.h"
@@ -18,27 +19,11 @@ constexpr float kGreatestThreshold = 4.5f;  // no cloud at all
 constexpr int kBisections = 11;             // to 0.004 deviations
 constexpr float kThickening = 1.5f;
 constexpr int kMostThickenings = 6;
+static_assert(CoverSearch::kMostSteps == 1 + kMostThickenings + kBisections);
 
 float depthInDirection(const CloudField& field, const CoverView& view, int direction, int only) {
   const glm::vec3 eye(0.0f, 0.0f, static_cast<float>(view.eyeM));
   return field.opticalDepth(eye, hemisphereDirection(direction, view.directions), kCoverOpticalDepth, only);
-}
-
-// Splits `directions` into those that the layer hides and those that it does not, each in order.
-struct Split {
-  std::vector<int> hidden, open;
-};
-Split split(const CloudField& field, const CloudLayer& layer, const CoverView& view,
-            const std::vector<int>& directions) {
-  const CloudField single(field.sharedNoise(), {layer}, field.earthRadiusM() - kEarthRadiusM);
-  std::vector<char> hides(directions.size());
-  parallelFor(directions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      hides[i] = depthInDirection(single, view, directions[i], 0) >= kCoverOpticalDepth;
-  });
-  Split s;
-  for (std::size_t i = 0; i < directions.size(); ++i) (hides[i] ? s.hidden : s.open).push_back(directions[i]);
-  return s;
 }
 
 }  // namespace
@@ -73,43 +58,93 @@ double coverOf(std::span<const float> opticalDepths) {
 }
 
 CloudLayer calibrated(const CloudField& field, int layer, double fraction, const CoverView& view) {
-  CloudLayer result = field.layers()[layer];
+  CoverSearch search;
+  search.start(field.sharedNoise(), field.earthRadiusM() - kEarthRadiusM, field.layers()[layer], fraction,
+               view);
+  while (!search.done()) search.step();
+  return search.layer();
+}
+
+void CoverSearch::start(const std::shared_ptr<const CloudNoise>& noise, double groundAltitudeM,
+                        const CloudLayer& layer, double fraction, const CoverView& view) {
+  if (!single_ || single_->sharedNoise() != noise ||
+      single_->earthRadiusM() != kEarthRadiusM + groundAltitudeM)
+    single_.emplace(noise, std::vector{layer}, groundAltitudeM);
+  view_ = view;
+  result_ = layer;
+  fraction_ = fraction;
   // The whole sky: nothing may show through, and little is to be gained beyond.
-  const double target = std::fmin(fraction, 0.999) * view.directions;
-  float low = kLeastThreshold, high = kGreatestThreshold;
+  target_ = std::fmin(fraction, 0.999) * view.directions;
+  low_ = kLeastThreshold;
+  high_ = kGreatestThreshold;
+  directions_.resize(view.directions);
+  std::iota(directions_.begin(), directions_.end(), 0);
+  hides_.resize(directions_.size());
+  hiddenAtLow_ = hiddenAtHigh_ = 0;
+  thickenings_ = bisections_ = 0;
+  looked_ = false;
+  result_.threshold = low_;
+}
 
-  // More extinction and a lower threshold can only hide more. So a direction that is hidden stays so while
-  // either goes that way, and only those are looked at again that may still change: in all, about three looks
-  // at each instead of one a step.
-  std::vector<int> directions(view.directions);
-  std::iota(directions.begin(), directions.end(), 0);
-  result.threshold = low;
-  Split atLow = split(field, result, view, directions);
-  for (int i = 0; i < kMostThickenings && static_cast<double>(atLow.hidden.size()) < target; ++i) {
-    result.extinction *= kThickening;
-    Split more = split(field, result, view, atLow.open);
-    atLow.hidden.insert(atLow.hidden.end(), more.hidden.begin(), more.hidden.end());
-    atLow.open = std::move(more.open);
-  }
+bool CoverSearch::done() const {
+  return bisections_ == kBisections;
+}
 
-  std::vector<int> undecided = std::move(atLow.hidden);  // hidden at `low`, not known at `high`
-  std::size_t hiddenAtHigh = 0;
-  for (int i = 0; i < kBisections; ++i) {
-    result.threshold = 0.5f * (low + high);
-    Split s = split(field, result, view, undecided);
-    if (static_cast<double>(hiddenAtHigh + s.hidden.size()) >= target) {
-      low = result.threshold;
-      undecided = std::move(s.hidden);
-    } else {
-      high = result.threshold;
-      hiddenAtHigh += s.hidden.size();
-      undecided = std::move(s.open);
+bool CoverSearch::tooThin() const {
+  return thickenings_ < kMostThickenings && static_cast<double>(hiddenAtLow_) < target_;
+}
+
+// Sorts directions_[begin, end) into those that the layer hides and then those that it does not: how many it
+// hides.
+std::size_t CoverSearch::lookAt(std::size_t begin, std::size_t end) {
+  single_->setLayers(std::span(&result_, 1));
+  parallelFor(end - begin, kGrain, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = begin + from; i < begin + to; ++i)
+      hides_[directions_[i]] = depthInDirection(*single_, view_, directions_[i], 0) >= kCoverOpticalDepth;
+  });
+  const auto first = directions_.begin() + static_cast<std::ptrdiff_t>(begin),
+             last = directions_.begin() + static_cast<std::ptrdiff_t>(end);
+  return static_cast<std::size_t>(std::partition(first, last, [&](int d) { return hides_[d]; }) - first);
+}
+
+// More extinction and a lower threshold can only hide more. So a direction that is hidden stays so while
+// either goes that way, and only those are looked at again that may still change: in all, about three looks
+// at each instead of one a step.
+void CoverSearch::step() {
+  if (done()) return;
+  if (!looked_ || tooThin()) {
+    if (looked_) {
+      result_.extinction *= kThickening;
+      ++thickenings_;
     }
+    hiddenAtLow_ += lookAt(hiddenAtLow_, directions_.size());
+    looked_ = true;
+    return;
+  }
+  if (bisections_ == 0) directions_.resize(hiddenAtLow_);  // hidden at low_, not known at high_
+  result_.threshold = 0.5f * (low_ + high_);
+  const std::size_t hidden = lookAt(0, directions_.size());
+  const auto open = directions_.begin() + static_cast<std::ptrdiff_t>(hidden);
+  if (static_cast<double>(hiddenAtHigh_ + hidden) >= target_) {
+    low_ = result_.threshold;
+    directions_.erase(open, directions_.end());
+  } else {
+    high_ = result_.threshold;
+    hiddenAtHigh_ += hidden;
+    directions_.erase(directions_.begin(), open);
   }
   // An overcast that is only just thick enough to count as cloud everywhere would show blue through: half a
   // deviation more.
-  result.threshold = fraction >= 0.99 ? low - 0.5f : 0.5f * (low + high);
-  return result;
+  if (++bisections_ == kBisections)
+    result_.threshold = fraction_ >= 0.99 ? low_ - 0.5f : 0.5f * (low_ + high_);
+}
+
+void CoverSearch::addOpticalDepths(std::span<float> sums) {
+  single_->setLayers(std::span(&result_, 1));
+  parallelFor(sums.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      sums[i] += depthInDirection(*single_, view_, static_cast<int>(i), 0);
+  });
 }
 
 }  // namespace welkin::field

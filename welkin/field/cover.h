@@ -6,6 +6,8 @@
 // the weather is reported.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,5 +45,35 @@ inline constexpr float kLeastThreshold = -4.0f;
 // threshold rises). Where the layer is too thin to reach it, its extinction is raised. The other layers do
 // not matter.
 CloudLayer calibrated(const CloudField& field, int layer, double fraction, const CoverView& view);
+
+// The same in steps, for frame loops. Once it has searched with so many directions in the noise of one sky it
+// allocates nothing.
+class CoverSearch {
+ public:
+  static constexpr int kMostSteps = 18;
+  void start(const std::shared_ptr<const CloudNoise>& noise, double groundAltitudeM, const CloudLayer& layer,
+             double fraction, const CoverView& view);
+  // Looks at most once in each direction. Does nothing once the search is done.
+  void step();
+  bool done() const;
+  const CloudLayer& layer() const { return result_; }  // when done
+  // Adds the layer's optical depth in each direction of the view, as layerOpticalDepths() has it.
+  void addOpticalDepths(std::span<float> sums);
+
+ private:
+  bool tooThin() const;
+  std::size_t lookAt(std::size_t begin, std::size_t end);
+
+  std::optional<CloudField> single_;  // of the layer alone
+  CoverView view_;
+  CloudLayer result_{};
+  double fraction_ = 0.0, target_ = 0.0;  // directions to be hidden
+  float low_ = 0.0f, high_ = 0.0f;        // thresholds
+  std::vector<int> directions_;           // that may still change
+  std::vector<char> hides_;               // by direction
+  std::size_t hiddenAtLow_ = 0, hiddenAtHigh_ = 0;
+  int thickenings_ = 0, bisections_ = 0;
+  bool looked_ = false;
+};
 
 }  // namespace welkin::field

@@ -11,6 +11,7 @@
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/air_volume_pass.h"
 #include "welkin/render/cloud_textures.h"
+#include "welkin/render/cover_ahead.h"
 #include "welkin/render/live_splats.h"
 #include "welkin/render/live_volumes.h"
 #include "welkin/render/octaves_pass.h"
@@ -79,6 +80,7 @@ struct LiveSky::Impl {
   std::array<gpu::Program, Others::kNumbers> boxBackdrops;
   gpu::FullscreenTriangle triangle;
   SkyTextures tables;
+  CoverAhead coverAhead;
   std::array<SheetUniformNames, kMaxShadows> shadowNames;
 
   std::optional<scene::SkyState> state;
@@ -173,6 +175,7 @@ void LiveSky::Impl::change(const scene::SkyState& next) {
 void LiveSky::Impl::changeScene(const scene::SkyState& next, const Others& there) {
   state = next;
   others = there;
+  coverAhead.reset();
   volumesKnow = airKnows = false;
   volumesInSky = shading::volumesIn(*state);
   sheets.clear();
@@ -203,6 +206,7 @@ void LiveSky::Impl::refresh() {
     if (sheet.living) octavesPass.compose(*sheet.living, state->secondsAfter, sheet.flat);
   updateAmbient();
   tables.updateLive(*state);
+  coverAhead.prepare(*state);
   shading::skyUniforms(*state, skyUniforms);
   sheetPass.setSky(skyUniforms);
   for (gpu::Program& p : backdrops()) setUniforms(p, skyUniforms);

@@ -11,7 +11,8 @@
 // every call. After the first two updates of a scene and a draw nothing is compiled, no OpenGL object is made
 // and no memory is allocated, and while time runs on no update takes much longer than others; but a view with
 // many more metaballs in it than any before makes room for them, and one with pixels of twice the angle or
-// more may sort the stars anew (sky/star_cells.h), some milliseconds.
+// more may sort the stars anew (sky/star_cells.h), some milliseconds, and where time jumps the cover of
+// volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some memory.
 //
 // Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
 // sheets and volumes all of them together have their place by the middle of their heights.

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 
-#include "welkin/core/random.h"
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/field/cover.h"
@@ -20,19 +18,7 @@
 namespace welkin::scene {
 namespace {
 
-constexpr field::CoverView kCalibrationView{.directions = 1000};
 constexpr field::CoverView kReportView{.directions = 3000};  // other directions than those of the calibration
-
-constexpr int kPatterns = 5;             // places in a layer's pattern that are tried
-constexpr double kCloseOktas = 0.2;      // a union as close as this will do
-constexpr double kMostExtraOktas = 0.2;  // by which a layer's own cover may differ for the sake of the union
-constexpr double kLeastOpenSky = 0.02;   // below which what lies above hardly matters
-
-// Candidate 0 is the layer's usual pattern.
-std::uint64_t patternSeed(const Scene& scene, std::size_t layer, int candidate) {
-  const auto seed = static_cast<std::uint64_t>(scene.seed);
-  return candidate == 0 ? hashOf(seed, 77, layer) : hashOf(seed, 77, layer, candidate);
-}
 
 std::vector<float> sumOf(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<float> sum(a.size());
@@ -40,64 +26,7 @@ std::vector<float> sumOf(const std::vector<float>& a, const std::vector<float>& 
   return sum;
 }
 
-// A layer settled in one way, and what comes of it.
-struct Trial {
-  LayerCalibration layer;
-  std::vector<float> together;  // optical depths of it and all beneath, by direction
-  double offOktas = 0.0;        // their cover, less what it should be
-};
-
-void keepCloser(Trial& best, Trial other) {
-  if (std::abs(other.offOktas) < std::abs(best.offOktas)) best = std::move(other);
-}
-
 }  // namespace
-
-// Layers are settled from the ground up. Towards the horizon every layer hides more than overhead, and the
-// patterns of one sky are but one draw: so the union of two layers is seldom what random overlap says, and on
-// the whole less. Another place in the layer's endless pattern is as good as the first for all else, so a few
-// are tried until the union comes close; what then is left over is made up by a little more or less of the
-// layer.
-std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
-                                              const std::shared_ptr<const field::CloudNoise>& noise) {
-  std::vector<LayerCalibration> result;
-  std::vector<float> beneath(kCalibrationView.directions, 0.0f);
-  double clear = 1.0;  // the share of the sky that random overlap leaves
-  for (std::size_t i = 0; i < weather.layers.size(); ++i) {
-    const weather::Layer& layer = weather.layers[i];
-    if (!isVolume(scene, layer)) {
-      result.push_back({patternSeed(scene, i, 0), 0.0f, static_cast<float>(layer.extinctionPerM)});
-      continue;
-    }
-    clear *= 1.0 - layer.oktas / kOktas;
-    // The layer in the pattern of `seed`, covering by itself what it should and `extraOktas` more.
-    auto tried = [&](std::uint64_t seed, double extraOktas) {
-      const double fraction = std::clamp((layer.oktas + extraOktas) / kOktas, 0.0, 1.0);
-      const field::CloudField start(noise, {shapeOf(layer, seed, 0.0)}, scene.place.altitudeM);
-      const field::CloudLayer c = field::calibrated(start, 0, fraction, kCalibrationView);
-      const field::CloudField settled(noise, {c}, scene.place.altitudeM);
-      std::vector<float> together = sumOf(beneath, field::layerOpticalDepths(settled, kCalibrationView, 0));
-      const double offOktas = kOktas * (field::coverOf(together) - (1.0 - clear));
-      return Trial{{seed, c.threshold, c.extinction}, std::move(together), offOktas};
-    };
-
-    Trial best = tried(patternSeed(scene, i, 0), 0.0);
-    const double open = 1.0 - field::coverOf(beneath);  // where the layer can be seen
-    if (i > 0 && open > kLeastOpenSky) {
-      for (int k = 1; k < kPatterns && std::abs(best.offOktas) > kCloseOktas; ++k)
-        keepCloser(best, tried(patternSeed(scene, i, k), 0.0));
-      if (std::abs(best.offOktas) > kCloseOktas) {
-        const double extra = std::clamp(-best.offOktas / open, -kMostExtraOktas, kMostExtraOktas);
-        keepCloser(best, tried(best.layer.seed, extra));
-      }
-    }
-    result.push_back(best.layer);
-    beneath = std::move(best.together);
-  }
-  return result;
-}
-
-namespace {
 
 field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
                           const LayerCalibration& calibration, double secondsAfter) {
@@ -112,6 +41,8 @@ field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
   }
   return shape;
 }
+
+namespace {
 
 // Those of the weather, then what rain falls from them.
 void layersAt(const Scene& scene, const weather::Weather& weather,

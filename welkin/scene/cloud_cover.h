@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clouds that cover as much of the sky as the weather says: the shapes of its layers, calibrated, and what
-// they deliver.
-//
-// Cover is calibrated where and when the weather is as described: on the ground at the place, at the scene's
-// time. The result is a pure function of (scene, weather), whatever the instant and the eye.
+// Clouds that cover as much of the sky as the weather says: the shapes of its layers, calibrated
+// (cover_calibration.h), and what they deliver.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "welkin/field/cloud_layer.h"
+#include "welkin/scene/cover_calibration.h"
 #include "welkin/scene/scene.h"
 #include "welkin/weather/weather.h"
 
@@ -28,20 +26,9 @@ struct LayerCover {
       0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
 };
 
-// What calibration settles for one layer.
-struct LayerCalibration {
-  std::uint64_t seed = 0;   // of the layer's pattern
-  float threshold = 0.0f;   // CloudLayer's
-  float extinction = 0.0f;  // 1/m; more than the weather's where that would be too thin to count as cloud
-
-  bool operator==(const LayerCalibration&) const = default;
-};
-
-// For each layer of the weather, so that each covers by itself what it should and all of them together what
-// they should by random overlap. `noise` is that of the scene's seed. Layers that are drawn as sheets or
-// metaballs are left out: nothing is settled for them.
-std::vector<LayerCalibration> calibrateClouds(const Scene& scene, const weather::Weather& weather,
-                                              const std::shared_ptr<const field::CloudNoise>& noise);
+// The layer `secondsAfter` the scene's time, where the wind has taken it.
+field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
+                          const LayerCalibration& calibration, double secondsAfter);
 
 // The clouds `secondsAfter` the scene's time, all layers as if they were volumes, then the rain that falls
 // from them (rain_shafts.h).

@@ -139,6 +139,29 @@ std::array<ClearSkyKey, 2> clearSkyKeys(const SkyState& s) {
   return {key, clearSkyKey(s, before + ClearSkyKey::kKeyS)};
 }
 
+void makeCoverKey(const SkyState& s, CoverKey& key, double atS) {
+  if (key.atS == atS) return;
+  if (s.coverKeyAhead && s.coverKeyAhead->atS == atS) {
+    key = *s.coverKeyAhead;
+    return;
+  }
+  CoverKeyInProgress making;
+  making.start(s.scene, s.weather, s.clouds->sharedNoise(), s.calibration, atS);
+  making.computeTo(making.parts());
+  key = making.key();
+}
+
+// Calibrates cover for the state's instant.
+void settleCover(SkyState& s) {
+  if (s.coverKeyS == 0.0) return;
+  auto& [first, second] = s.coverKeys;
+  const double before = std::floor(s.secondsAfter / s.coverKeyS) * s.coverKeyS, after = before + s.coverKeyS;
+  if (first.atS == after || second.atS == before) std::swap(first, second);
+  makeCoverKey(s, first, before);
+  if (s.secondsAfter != before) makeCoverKey(s, second, after);
+  blendCover(first, second, s.secondsAfter, s.calibration);
+}
+
 // Where the light high up is looked for.
 double highAltitude(double groundAltitudeM) {
   return std::max(ClearSkyKey::kHighM, groundAltitudeM + 1000.0);
@@ -379,10 +402,17 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   }
   SkyState s;
   s.scene = scene;
+  s.secondsAfter = secondsAfter;
   s.weather = weatherOf(scene);
   const auto noise = field::makeCloudNoise(static_cast<std::uint64_t>(scene.seed));
-  s.calibration = calibrateClouds(scene, s.weather, noise);
+  s.coverKeyS = coverKeyInterval(scene, s.weather);
+  const bool keyIsFar = std::abs(secondsAfter) >= s.coverKeyS;
+  CoverKey start = firstCoverKey(scene, s.weather, noise, keyIsFar);
+  s.calibration = start.layers;
+  if (!keyIsFar) s.coverKeys[0] = std::move(start);
   s.clouds = cloudsAt(scene, s.weather, s.calibration, noise, secondsAfter);
+  settleCover(s);
+  moveClouds(scene, s.weather, s.calibration, secondsAfter, *s.clouds);
   s.metaballs = std::make_shared<MetaballSky>(scene, s.weather, s.clouds->earthRadiusM());
   DeliveredCover cover = measureCover(scene, s.weather, *s.clouds, secondsAfter, s.metaballs.get());
   s.warnings = textureWarnings(scene);
@@ -401,6 +431,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
 
 void moveSky(SkyState& s, double secondsAfter) {
   s.secondsAfter = secondsAfter;
+  settleCover(s);
   moveClouds(s.scene, s.weather, s.calibration, secondsAfter, *s.clouds);
   const SkyLights lights = lightsAt(s.scene, secondsAfter);
   s.time = lights.time;

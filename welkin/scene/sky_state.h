@@ -78,9 +78,12 @@ struct SkyState {
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::optional<field::CloudField> clouds;       // always there
   std::shared_ptr<const MetaballSky> metaballs;  // beside them; of all instants
-  std::vector<LayerCalibration> calibration;     // a layer each, in the order of weather.layers
-  std::array<ClearSkyKey, 2> clearSky;           // before and after the instant
-  std::optional<ClearSkyKey> clearSkyAhead;      // of another, where it is known: saves time to a move there
+  double coverKeyS = 0.0;                        // coverKeyInterval()
+  std::array<CoverKey, 2> coverKeys;             // about the instant; the second may be any at the first
+  std::optional<CoverKey> coverKeyAhead;         // of another, where it is known: saves time to a move there
+  std::vector<LayerCalibration> calibration;  // of the instant; a layer each, in the order of weather.layers
+  std::array<ClearSkyKey, 2> clearSky;        // before and after the instant
+  std::optional<ClearSkyKey> clearSkyAhead;   // of another, where it is known: saves time to a move there
   AmbientLight ambient;
   std::vector<LayerCover> cover;       // a layer each, in the order of weather.layers
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
@@ -93,13 +96,14 @@ struct SkyState {
 // cannot be read.
 weather::Weather weatherOf(const Scene& scene);
 
-// Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, cover) is taken
-// from `previous` when given, which must come from the same scene; the sky is the same either way. The
-// delivered cover is measured only without `previous`, as it costs more than the rest: a sequence carries
-// that of its first picture.
+// Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, patterns), and
+// key instants that both need, are taken from `previous` when given, which must come from the same scene; the
+// sky is the same either way. The delivered cover is measured only without `previous`, as it costs more than
+// the rest: a sequence carries that of its first picture.
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
 
-// The same in the place of the sky of the same scene at another instant. Allocates nothing.
+// The same in the place of the sky of the same scene at another instant. Allocates nothing, unless cover is
+// to be calibrated at a key instant that is neither there nor in coverKeyAhead: some hundredths of a second.
 void moveSky(SkyState& state, double secondsAfter);
 
 // A key instant in portions, for frame loops: the same key whatever the portions.

@@ -86,6 +86,28 @@ TEST(Cover, ThinLayersAreThickenedUntilTheyHide) {
   EXPECT_GT(measureCover(CloudField(testNoise(), {layer}, 0.0), {}), 0.99);
 }
 
+TEST(Cover, IsSearchedInABoundedNumberOfSteps) {
+  CloudLayer thin = sheetLike();
+  thin.extinction = 1e-6f;  // too little, however often it is thickened
+  CoverSearch search;
+  for (const CloudLayer& layer : {cumulusLike(0.0f), thin, cumulusLike(0.0f)}) {
+    search.start(testNoise(), 0.0, layer, 0.4, {});
+    int steps = 0;
+    for (; !search.done() && steps < 100; ++steps) search.step();
+    EXPECT_LE(steps, CoverSearch::kMostSteps);
+    EXPECT_GE(steps, CoverSearch::kMostSteps - 6);
+    const CloudLayer found = search.layer(),
+                     whole = calibrated(CloudField(testNoise(), {layer}, 0.0), 0, 0.4, {});
+    EXPECT_EQ(found.threshold, whole.threshold);
+    EXPECT_EQ(found.extinction, whole.extinction);
+    search.step();
+    EXPECT_EQ(search.layer().threshold, found.threshold);
+  }
+  std::vector<float> depths(CoverView{}.directions, 0.0f);
+  search.addOpticalDepths(depths);
+  EXPECT_NEAR(coverOf(depths), 0.4, 0.005);
+}
+
 TEST(Cover, IsTheSameForAnyThreadCount) {
   const CloudField field(testNoise(), {cumulusLike(1.0f)}, 0.0);
   const int before = threadCount();

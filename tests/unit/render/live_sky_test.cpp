@@ -414,6 +414,21 @@ TEST_F(LiveSkyTest, MarchedFramesAllocateNothing) {
   EXPECT_EQ(gAllocations - before, 0);
 }
 
+// Nor where time comes to key instants of cover.
+TEST_F(LiveSkyTest, UpdatesWithVolumesAllocateNothing) {
+  LiveSky sky;
+  const scene::Scene s = marchedScene();
+  sky.update(s, 0.0);
+  const double step = sky.state().coverKeyS / 20.0;
+  ASSERT_GT(step, 0.0);
+  sky.update(s, step);
+  drawn(sky);
+  const long before = gAllocations;
+  for (int i = 2; i < 50; ++i) sky.update(s, i * step);
+  EXPECT_EQ(gAllocations - before, 0);
+  EXPECT_EQ(sky.state().calibration, scene::buildSky(s, 49 * step).calibration);
+}
+
 // Only the clouds, over what an engine has drawn.
 TEST_F(LiveSkyTest, WithoutABackdropWhatIsThereShowsThrough) {
   scene::Scene s = thinScene();

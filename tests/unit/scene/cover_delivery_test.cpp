@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -123,12 +124,87 @@ TEST(CoverDelivery, CalibrationIsAFunctionOfTheWeatherAlone) {
   EXPECT_EQ(once, alone);
 }
 
+// Not only at the scene's time: other clouds are in view later.
+TEST(CoverDelivery, AtEveryInstant) {
+  for (const char* metar : {
+           "EGLL 211120Z 24015KT 9999 FEW040 14/12 Q1013",
+           "EGLL 211120Z 24015KT 9999 SCT030 14/12 Q1013",
+           "KMCO 212053Z 24008KT 10SM SCT035CB 31/24 A2992",
+           "EGLL 211120Z 24020KT 9999 SCT250 14/12 Q1013",
+           "EGLL 211120Z 24020KT 9999 BKN012 14/12 Q1013",
+           "EGLL 211120Z 24008KT 9999 FEW040 SCT250 14/12 Q1013",
+       }) {
+    SCOPED_TRACE(metar);
+    Scene scene = sceneOf(metar);
+    scene.drift.windDeg = 40.0;
+    SkyState state = buildSky(scene, 0.0);
+    for (double t = -1187.0; t < 7200.0; t += 1187.0) {
+      moveSky(state, t);
+      const DeliveredCover cover = measureCover(scene, state.weather, *state.clouds, t);
+      for (const LayerCover& layer : cover.layers)
+        EXPECT_NEAR(layer.deliveredOktas, layer.requestedOktas, kToleranceOktas) << t;
+      EXPECT_NEAR(cover.sky.deliveredOktas, cover.sky.requestedOktas, kToleranceOktas) << t;
+    }
+  }
+}
+
+TEST(CoverDelivery, KeyInstantsAreCloserTheFasterCloudsPass) {
+  const auto interval = [](const std::string& metar) {
+    const Scene scene = sceneOf(metar);
+    return coverKeyInterval(scene, weatherOf(scene));
+  };
+  EXPECT_EQ(interval("EGLL 211120Z 00000KT CAVOK 14/12 Q1013"), 0.0);
+  EXPECT_EQ(interval("EGLL 211120Z 24001KT 9999 SCT040 14/12 Q1013"), 240.0);
+  const double slow = interval("EGLL 211120Z 24008KT 9999 SCT040 14/12 Q1013"),
+               fast = interval("EGLL 211120Z 24040KT 9999 SCT040 14/12 Q1013"),
+               low = interval("EGLL 211120Z 24040KT 9999 SCT006 14/12 Q1013");
+  EXPECT_LT(fast, slow);
+  EXPECT_LT(low, fast);
+  EXPECT_GE(low, 7.5);
+}
+
+TEST(CoverDelivery, AKeyInstantInPortionsIsTheSame) {
+  const Scene scene = sceneOf("PTSA 220150Z 04010KT 10SM BKN020TCU BKN130 BKN300 31/24 A2975");
+  const weather::Weather weather = weatherOf(scene);
+  const CoverKey first = firstCoverKey(scene, weather, noiseOf(1), false);
+  EXPECT_EQ(first.layers, calibrateClouds(scene, weather, noiseOf(1)));
+  CoverKeyInProgress portions, whole;
+  for (const double atS : {0.0, 480.0}) {
+    portions.start(scene, weather, noiseOf(1), first.layers, atS);
+    for (int part = 7; part < portions.parts() + 7; part += 7) portions.computeTo(part);
+    whole.start(scene, weather, noiseOf(1), first.layers, atS);
+    whole.computeTo(whole.parts());
+    EXPECT_EQ(portions.key(), whole.key());
+    EXPECT_EQ(portions.key() == first, atS == 0.0);
+  }
+}
+
+TEST(CoverDelivery, BetweenKeyInstantsItIsBlended) {
+  const CoverKey before{60.0, {{7, 0.5f, 0.01f}}}, after{120.0, {{7, 1.5f, 0.03f}}};
+  std::vector<LayerCalibration> blended;
+  blendCover(before, after, 75.0, blended);
+  EXPECT_EQ(blended, (std::vector<LayerCalibration>{{7, 0.75f, std::lerp(0.01f, 0.03f, 0.25f)}}));
+  blendCover(before, {}, 60.0, blended);
+  EXPECT_EQ(blended, before.layers);
+}
+
+// Wherever the sequence has been before.
+TEST(CoverDelivery, ASequenceHasTheStillsCalibration) {
+  const Scene scene = sceneOf("UIBB 180730Z 26006MPS 9999 SCT016CB BKN100 M11/M15 Q1025 NOSIG");
+  SkyState moved = buildSky(scene, 0.0);
+  for (const double t : {0.5, 60.0, 6939.0, -20.0, 20.0}) {
+    moveSky(moved, t);
+    EXPECT_EQ(moved.calibration, buildSky(scene, t).calibration) << t;
+    EXPECT_EQ(moved.calibration, calibrationAt(scene, moved.weather, moved.clouds->sharedNoise(), t)) << t;
+  }
+}
+
 TEST(CoverDelivery, ALaterSkyIsTheSameFromAnEarlierOneAsFromNothing) {
   const Scene scene = sceneOf("UIBB 180730Z 26006MPS 9999 SCT016CB BKN100 M11/M15 Q1025 NOSIG");
   const SkyState first = buildSky(scene, 0.0);
-  const SkyState later = buildSky(scene, 600.0), continued = buildSky(scene, 600.0, &first);
+  const SkyState later = buildSky(scene, 631.0), continued = buildSky(scene, 631.0, &first);
   SkyState moved = first;
-  moveSky(moved, 600.0);
+  moveSky(moved, 631.0);
   ASSERT_EQ(later.clouds->layers().size(), 3u);  // snow falls from the first
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<float> a, b, c;
