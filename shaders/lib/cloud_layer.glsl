@@ -11,7 +11,7 @@ struct CloudLayer {
   float extinction;     // in the body of the cloud, 1/m
   float threshold;      // of the placement noise, sd; more is less cover
 
-  vec2 driftM;          // displacement of the pattern by wind and seed
+  vec2 driftM;          // displacement of the pattern by wind and seed, less whole periods of cells (moveLayer(), field/cloud_layer.h)
   vec2 shearM;          // displacement of the top relative to the base
   vec2 along;           // unit direction along which the pattern is drawn out
   float stretch;        // how much, >= 1
@@ -21,6 +21,7 @@ struct CloudLayer {
   float fractalWeight;
   float patchWeight;
   float patchM;         // period of the patches
+  vec2 patchShift;      // their displacement beside that of the pattern, in periods
   float warpM;          // how far patches push cells about
 
   float dome;           // fall of the surface towards the top, sd

@@ -32,11 +32,14 @@ WELKIN_FN vec2 cloudPatternPosition(CloudLayer layer, vec3 q, float h) {
   return vec2(dot(p, layer.along), p.y * layer.along.x - p.x * layer.along.y);
 }
 
+// Patches are turned against cells by this angle.
+WELKIN_CONST float kPatchCosine = 0.8f;
+WELKIN_CONST float kPatchSine = 0.6f;
+
 // Placement noise, standard normal.
 WELKIN_FN float cloudPlacement(CloudLayer layer, sampler2D placement, vec2 p) {
   vec2 a = vec2(p.x / layer.stretch, p.y);
-  // Patches turned by an angle whose tangent is irrational against the tile, so that the two periods never agree.
-  vec2 turned = vec2(0.8f * a.x - 0.6f * a.y, 0.6f * a.x + 0.8f * a.y) / layer.patchM;
+  vec2 turned = vec2(kPatchCosine * a.x - kPatchSine * a.y, kPatchSine * a.x + kPatchCosine * a.y) / layer.patchM - layer.patchShift;
   vec4 patches = textureLod(placement, turned, 0.0f);
   vec2 b = (a + layer.warpM * vec2(patches.y, patches.x)) / layer.cellM;
   vec4 cells = textureLod(placement, b, 0.0f);

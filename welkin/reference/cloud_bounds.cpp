@@ -182,8 +182,9 @@ CloudBounds::Layer CloudBounds::layer(std::size_t index, const CloudBox& box) co
   const Interval north = shifted(Interval{box.low.y, box.high.y}, -l.driftM.y) + (-l.shearM.y) * h;
   const Turned p = turned(east, north, l.along.x, l.along.y);
   const Interval ax = 1.0f / l.stretch * p.x, ay = p.y;
-  const Interval ux = 0.8f / l.patchM * ax + (-0.6f / l.patchM) * ay,
-                 uy = 0.6f / l.patchM * ax + 0.8f / l.patchM * ay;
+  const float cosine = shared::kPatchCosine / l.patchM, sine = shared::kPatchSine / l.patchM;
+  const Interval ux = shifted(cosine * ax + -sine * ay, -l.patchShift.x),
+                 uy = shifted(sine * ax + cosine * ay, -l.patchShift.y);
   const glm::vec3 patchLow(ux.low, uy.low, 0.0f), patchHigh(ux.high, uy.high, 0.0f);
   const TexelExtremes::Channels patches = placement_.over(patchLow, patchHigh);
   const Interval bx = 1.0f / l.cellM * (ax + l.warpM * patches[1]),

@@ -141,8 +141,9 @@ HWY_INLINE VF extinctionAt(const CloudTextures& textures, const CloudLayerFactor
   const VF along = east * all(l.along.x) + north * all(l.along.y),
            across = north * all(l.along.x) - east * all(l.along.y);
   const VF drawn = along * all(f.perStretch);
-  const Placement around(textures.placement, (all(0.8f) * drawn - all(0.6f) * across) * all(f.perPatch),
-                         (all(0.6f) * drawn + all(0.8f) * across) * all(f.perPatch), alive);
+  const VF cosine = all(f.patchCosine), sine = all(f.patchSine);
+  const Placement around(textures.placement, cosine * drawn - sine * across - all(l.patchShift.x),
+                         sine * drawn + cosine * across - all(l.patchShift.y), alive);
   const Pairs warp = around.channels(0);
   const Pairs cells = Placement(textures.placement, (drawn + all(l.warpM) * warp.second) * all(f.perCell),
                                 (across + all(l.warpM) * warp.first) * all(f.perCell), alive)

@@ -27,12 +27,13 @@ struct CloudTextures {
   CloudTexture placement, shape, detail;
 };
 
-// A layer, and what its numbers are divided by.
+// A layer, and what its numbers are divided by; of the patches' angle, cosine and sine over their period.
 struct CloudLayerFactors {
   explicit CloudLayerFactors(const field::CloudLayer& l);
 
   field::CloudLayer layer;
-  float perDepth, perStretch, perPatch, perCell, perShapeStretch, perShapeTall, perShape, perDetail;
+  float perDepth, perStretch, patchCosine, patchSine, perCell, perShapeStretch, perShapeTall, perShape,
+      perDetail;
   float perShapeAmount, perBottomSoft, perTopSoft;
   float anvilFrom, perAnvil, anvilShape, anvilEdge, anvilExtinction;
 };

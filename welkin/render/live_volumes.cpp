@@ -8,6 +8,7 @@
 #include "welkin/field/cloud_field.h"
 #include "welkin/render/jitter.h"
 #include "welkin/render/programs.h"
+#include "welkin/scene/rain_shafts.h"
 #include "welkin/shading/sheet_mesh.h"
 
 namespace welkin::render {
@@ -134,14 +135,15 @@ LiveVolumes::Memory LiveVolumes::makeMemory(int width, int height, std::size_t b
   return m;
 }
 
-glm::vec2 LiveVolumes::driftOfBand(const scene::SkyState& state, std::size_t band) const {
-  if (layout_.bands.empty()) return glm::vec2(0.0f);
-  const int layer = layout_.bands[band].layers.front();
-  return state.clouds->layers()[static_cast<std::size_t>(layer)].driftM;
+glm::dvec2 LiveVolumes::driftOfBand(const scene::SkyState& state, std::size_t band) const {
+  if (layout_.bands.empty()) return glm::dvec2(0.0);
+  const auto layer = static_cast<std::size_t>(layout_.bands[band].layers.front());
+  const std::size_t of = scene::layerOfField(state.scene, state.weather, layer).of;
+  return scene::windDriftM(state.scene, state.weather.layers[of], state.secondsAfter);
 }
 
 glm::vec2 LiveVolumes::lightShiftM(const scene::SkyState& state, const shading::ViewParts& parts) const {
-  return glm::vec2(glm::dvec2(parts.eyeM) - light_->centreM) - (driftOfBand(state, 0) - light_->driftM);
+  return glm::vec2(glm::dvec2(parts.eyeM) - light_->centreM - (driftOfBand(state, 0) - light_->driftM));
 }
 
 LiveVolumes::Swept LiveVolumes::wantedLight(const scene::SkyState& state, const shading::ViewParts& parts) {
@@ -255,8 +257,8 @@ void LiveVolumes::resolve(Memory& m, const scene::SkyState& state, const shading
   }
   gpu::Program& p = resolve_;
   for (std::size_t b = 0; b < bandMoves_.size(); ++b) {
-    const glm::vec2 driftM = driftOfBand(state, b);
-    bandMoves_[b] = glm::vec4(driftM - m.driftM[b], 0.0f, 0.0f);
+    const glm::dvec2 driftM = driftOfBand(state, b);
+    bandMoves_[b] = glm::vec4(glm::vec2(driftM - m.driftM[b]), 0.0f, 0.0f);
     m.driftM[b] = driftM;
   }
   p.set("uBandMoveM", bandMoves_);

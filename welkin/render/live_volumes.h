@@ -101,7 +101,7 @@ class LiveVolumes {
     int frame = 0;
     bool still = false;  // in the last frame neither eye nor time moved
     shading::ViewParts parts{};
-    std::vector<glm::vec2> driftM;  // of each band, at the last frame
+    std::vector<glm::dvec2> driftM;  // of each band, at the last frame
     double seconds = 0.0;
     int light = 0;  // the light volume's number
   };
@@ -109,7 +109,7 @@ class LiveVolumes {
   struct Swept {
     double seconds = 0.0;
     glm::dvec2 centreM{0.0};
-    glm::vec2 driftM{0.0f};
+    glm::dvec2 driftM{0.0};
     bool bySun = true;
     glm::vec3 line{0, 0, 1};
     bool towardsSun = true;
@@ -121,7 +121,7 @@ class LiveVolumes {
   bool isOfAnotherTime(const Swept& wanted) const;
   bool leaps(const Swept& wanted, glm::dvec2 eyeM) const;
   void keepLight(const scene::SkyState& state, const CloudTextures& clouds, const shading::ViewParts& parts);
-  glm::vec2 driftOfBand(const scene::SkyState& state, std::size_t band) const;
+  glm::dvec2 driftOfBand(const scene::SkyState& state, std::size_t band) const;
   glm::vec2 lightShiftM(const scene::SkyState& state, const shading::ViewParts& parts) const;
   void setSheets(gpu::Program& program, const scene::SkyState& state, const std::vector<ThinLayer>& sheets,
                  const shading::ViewParts& parts);

@@ -28,21 +28,20 @@ std::vector<float> sumOf(const std::vector<float>& a, const std::vector<float>& 
 
 }  // namespace
 
-field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
-                          const LayerCalibration& calibration, double secondsAfter) {
-  field::CloudLayer shape = shapeOf(layer, calibration.seed, secondsAfter);
-  shape.threshold = calibration.threshold;
-  shape.extinction = calibration.extinction;
-  if (scene.drift.windDeg != 0.0) {
-    // Where the turning wind has taken it, less where the wind as described would have.
-    const glm::dvec2 wandered = windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter) -
-                                windPath({}, 0, layer.windFromDeg, secondsAfter);
-    shape.driftM += glm::vec2(layer.windSpeedMps * wandered);
-  }
-  return shape;
+glm::dvec2 windDriftM(const Scene& scene, const weather::Layer& layer, double secondsAfter) {
+  return layer.windSpeedMps * windPath(scene.drift, windSeed(scene), layer.windFromDeg, secondsAfter);
 }
 
 namespace {
+
+// The layer at the instant, not yet moved.
+field::CloudLayer settledLayer(const weather::Layer& layer, const LayerCalibration& calibration,
+                               double secondsAfter) {
+  field::CloudLayer shape = shapeOf(layer, calibration.seed, secondsAfter);
+  shape.threshold = calibration.threshold;
+  shape.extinction = calibration.extinction;
+  return shape;
+}
 
 // Those of the weather, then what rain falls from them.
 void layersAt(const Scene& scene, const weather::Weather& weather,
@@ -50,15 +49,25 @@ void layersAt(const Scene& scene, const weather::Weather& weather,
               std::span<field::CloudLayer> layers) {
   const std::size_t own = weather.layers.size();
   for (std::size_t i = 0; i < own; ++i)
-    layers[i] = layerAt(scene, weather.layers[i], calibration[i], secondsAfter);
+    layers[i] = settledLayer(weather.layers[i], calibration[i], secondsAfter);
   const RainingLayers raining = rainingLayers(scene, weather);
   for (std::size_t k = 0; k < raining.count; ++k) {
     const std::size_t i = raining.of[k];
     layers[own + k] = shaftBeneath(weather, weather.layers[i], layers[i], secondsAfter);
+    field::moveLayer(layers[own + k], windDriftM(scene, weather.layers[i], secondsAfter));
   }
+  for (std::size_t i = 0; i < own; ++i)
+    field::moveLayer(layers[i], windDriftM(scene, weather.layers[i], secondsAfter));
 }
 
 }  // namespace
+
+field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,
+                          const LayerCalibration& calibration, double secondsAfter) {
+  field::CloudLayer shape = settledLayer(layer, calibration, secondsAfter);
+  field::moveLayer(shape, windDriftM(scene, layer, secondsAfter));
+  return shape;
+}
 
 field::CloudField cloudsAt(const Scene& scene, const weather::Weather& weather,
                            const std::vector<LayerCalibration>& calibration,

@@ -3,6 +3,7 @@
 // (cover_calibration.h), and what they deliver.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct LayerCover {
   double deliveredOktas =
       0.0;  // measured from the ground at the place: hemisphere at optical depth above 0.3
 };
+
+// Where the wind has taken a layer since the scene's time, east and north.
+glm::dvec2 windDriftM(const Scene& scene, const weather::Layer& layer, double secondsAfter);
 
 // The layer `secondsAfter` the scene's time, where the wind has taken it.
 field::CloudLayer layerAt(const Scene& scene, const weather::Layer& layer,

@@ -120,7 +120,6 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
       std::sqrt(habit.cellWeight * habit.cellWeight + habit.fractalWeight * habit.fractalWeight +
                 habit.patchWeight * habit.patchWeight);
   const glm::dvec2 windDirection = weather::windTowards(layer.windFromDeg);
-  const glm::dvec2 driftM = windDirection * (layer.windSpeedMps * secondsAfter);
   Random random(seed);
   const double offsetX = 2.0e5 * random.uniform(), offsetY = 2.0e5 * random.uniform();
   const double offsetZ = 1.0e4 * random.uniform();
@@ -130,7 +129,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.topM = static_cast<float>(layer.topM);
   s.extinction = static_cast<float>(layer.extinctionPerM);
   s.threshold = 0.0f;
-  s.driftM = glm::vec2(driftM + glm::dvec2(offsetX, offsetY));
+  s.driftM = glm::vec2(glm::dvec2(offsetX, offsetY));
   s.shearM = glm::vec2(windDirection * (habit.shear * depth));
   s.along = glm::vec2(windDirection);
   s.stretch = static_cast<float>(habit.stretch);
@@ -155,10 +154,13 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.detailAmount = static_cast<float>(habit.detailAmount);
   // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the
   // others and the sum never returns, while any instant can be had directly.
-  s.shapeShiftM =
-      glm::vec3(-0.06 * layer.windSpeedMps * secondsAfter, 0.0, habit.riseMps * secondsAfter + offsetZ);
-  s.detailShiftM =
-      glm::vec3(-0.10 * layer.windSpeedMps * secondsAfter, 0.0, 1.8 * habit.riseMps * secondsAfter + offsetZ);
+  const auto shifted = [&](double lag, double riseMps, float periodM) {
+    const auto period = static_cast<double>(periodM);
+    return glm::vec3(field::withinPeriod(-lag * layer.windSpeedMps * secondsAfter, period), 0.0,
+                     field::withinPeriod(riseMps * secondsAfter, period) + offsetZ);
+  };
+  s.shapeShiftM = shifted(kShapeLag, habit.riseMps, s.shapeM);
+  s.detailShiftM = shifted(kDetailLag, 1.8 * habit.riseMps, s.detailM);
   s.edge = static_cast<float>(habit.edge / spacing);  // as deep in metres
   s.lift = static_cast<float>(habit.lift);
   // The steepest: tops, and the underside of an anvil.

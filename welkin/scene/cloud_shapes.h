@@ -9,9 +9,12 @@
 
 namespace welkin::scene {
 
-// The layer's shape `secondsAfter` the moment of the weather. `seed` is the layer's own. The threshold is
-// that of half cover, to be calibrated.
+// The layer's shape `secondsAfter` the moment of the weather, where it was then: wind moves it on by
+// field::moveLayer(). `seed` is the layer's own. The threshold is that of half cover, to be calibrated.
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter);
+
+// Of the wind, by which the large and the small 3D noise stay behind.
+inline constexpr double kShapeLag = 0.06, kDetailLag = 0.10;
 
 // The diameter of droplets whose phase function all layers of water have: their mean, weighted by cover;
 // micrometres.

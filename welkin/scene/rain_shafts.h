@@ -39,7 +39,7 @@ bool hasRain(const Scene& scene, const weather::Weather& weather);
 bool hasIce(const Scene& scene, const weather::Weather& weather);
 
 // The shaft beneath a layer, whose shape is settled (its threshold above all) and which lies above the
-// ground.
+// ground; like it not yet moved by the wind.
 field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::Layer& layer,
                                const field::CloudLayer& shape, double secondsAfter);
 

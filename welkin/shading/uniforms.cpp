@@ -98,7 +98,7 @@ void cloudLayerUniforms(const scene::SkyState& state, glm::dvec2 eyeM, Uniforms&
   const auto layers = state.clouds->layers();
   for (std::size_t i = 0; i < layers.size(); ++i) {
     field::CloudLayer layer = layers[i];
-    layer.driftM = glm::vec2(glm::dvec2(layer.driftM) - eyeM);
+    field::moveLayer(layer, -eyeM);
     field::forEachMember(layer, [&](const char* name, auto value) { u.put(kOwners[i], name, value); });
   }
 }

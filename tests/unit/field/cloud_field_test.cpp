@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "test_layers.h"
 #include "welkin/core/error.h"
@@ -94,6 +97,73 @@ TEST(CloudField, DriftsWithTheWind) {
     EXPECT_NEAR(e, b.extinction(p + glm::vec3(300.0f, -120.0f, 0.0f)), 0.05f * still.extinction);
   }
   EXPECT_GT(cloudy, 100);
+}
+
+// Streaked cloud in a slanting frame, whose periods all differ.
+CloudLayer slanting() {
+  CloudLayer l = cumulusLike(0.2f);
+  l.along = glm::normalize(glm::vec2(0.4f, -0.9f));
+  l.stretch = 1.7f, l.cellM = 17321.3f, l.patchM = 41000.7f, l.warpM = 500.0f;
+  l.shapeM = 2345.6f, l.shapeStretch = 1.3f, l.detailM = 456.7f;
+  return l;
+}
+
+// The largest difference of the extinctions of a at q and of b at q + byM, of that in the body; and how many
+// places have cloud.
+std::pair<double, int> differenceOf(const CloudLayer& a, const CloudLayer& b, glm::vec2 byM) {
+  const std::shared_ptr<const CloudNoise> noise = testNoise();
+  const shared::sampler2D placement{&noise->placement, shared::Wrap::kRepeat, shared::Wrap::kRepeat};
+  const shared::sampler3D shape{&noise->shape, shared::Wrap::kRepeat},
+      detail{&noise->detail, shared::Wrap::kRepeat};
+  Random random(3);
+  double most = 0.0;
+  int cloudy = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const glm::vec3 q(3e4f * random.uniform(), 3e4f * random.uniform(), 1000.0f + 900.0f * random.uniform());
+    float clear = 0.0f;
+    const float here = shared::cloudExtinction(a, placement, shape, detail, q, clear),
+                there = shared::cloudExtinction(b, placement, shape, detail, q + glm::vec3(byM, 0.0f), clear);
+    cloudy += here > 0.0f;
+    most = std::max(most, static_cast<double>(std::abs(here - there) / a.extinction));
+  }
+  return {most, cloudy};
+}
+
+// By ways that a float can say, both ways of moving are one: over no, one and several periods.
+TEST(CloudField, MovesByWholePeriodsAsByTheWholeWay) {
+  for (const glm::dvec2 byM : {glm::dvec2(900.0, -300.0), {21000.0, 9000.0}, {-60000.0, 90000.0}}) {
+    CloudLayer moved = slanting(), plain = slanting();
+    moveLayer(moved, byM);
+    plain.driftM += glm::vec2(byM);
+    const auto [most, cloudy] = differenceOf(plain, moved, glm::vec2(0.0f));
+    EXPECT_LT(most, 0.02) << byM.x;
+    EXPECT_GT(cloudy, 400);
+    EXPECT_EQ(moved.driftM == plain.driftM, std::abs(byM.x) < 1000.0);
+  }
+}
+
+// After a year in a gale a quarter of a second is as smooth as at first.
+TEST(CloudField, MovesOnSmoothlyHoweverFarItIs) {
+  const glm::dvec2 windMps(130.0, -75.0);
+  for (const double fromS : {0.0, 31.6e6, -31.6e6}) {
+    CloudLayer before = slanting(), after = slanting();
+    moveLayer(before, windMps * fromS);
+    moveLayer(after, windMps * (fromS + 0.25));
+    const glm::vec2 wayM(0.25 * windMps);
+    const auto [most, cloudy] = differenceOf(before, after, wayM);
+    EXPECT_LT(most, 0.02) << fromS;
+    EXPECT_GT(cloudy, 400);
+    EXPECT_GT(differenceOf(before, after, -wayM).first, 0.2) << fromS;
+    EXPECT_LT(glm::length(before.driftM), 2.0f * before.cellM);
+  }
+}
+
+// And back again.
+TEST(CloudField, MovesBackToWhereItWas) {
+  CloudLayer moved = slanting();
+  moveLayer(moved, {3.1e9, -2.2e9});
+  moveLayer(moved, {-3.1e9, 2.2e9});
+  EXPECT_LT(differenceOf(slanting(), moved, glm::vec2(0.0f)).first, 0.02);
 }
 
 // Layers follow the curve of the earth: 100 km away a level line of sight is 785 m higher above the ground.

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "welkin/core/random.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_cover.h"
 #include "welkin/scene/sky_state.h"
@@ -223,6 +224,36 @@ TEST(CloudShapes, MoveWithTheDepth) {
   }
   EXPECT_NE(numbers(1300.0).at("dome"), numbers(1500.0).at("dome"));
   EXPECT_EQ(numbers(2400.0).at("dome"), numbers(3000.0).at("dome"));
+}
+
+// Places, and the noises that shape clouds there, move on after a year as at first.
+TEST(CloudsFarInTime, MoveAsTheyDoAtFirst) {
+  weather::Weather weather;
+  weather::Layer storm;
+  storm.genus = weather::Genus::kCumulonimbus;
+  storm.baseM = 1200.0, storm.topM = 9000.0, storm.oktas = 4.0;
+  storm.windFromDeg = 250.0, storm.windSpeedMps = 30.0, storm.rainMmPerH = 20.0;
+  weather.layers = {storm};
+  Scene scene;
+  const auto noise = field::makeCloudNoise(1);
+  const std::vector<LayerCalibration> calibration{{5, 0.5f, 0.05f}};
+  Random random(1);
+  for (const double fromS : {0.0, 31536000.0, -31536000.0}) {
+    const field::CloudField before = cloudsAt(scene, weather, calibration, noise, fromS),
+                            after = cloudsAt(scene, weather, calibration, noise, fromS + 0.25);
+    ASSERT_EQ(before.layers().size(), 2u);  // and its rain
+    const glm::dvec2 wayM = windDriftM(scene, storm, fromS + 0.25) - windDriftM(scene, storm, fromS);
+    EXPECT_NEAR(glm::length(wayM), 7.5, 1e-3);
+    double most = 0.0, greatest = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      const glm::vec3 p(2e4f * random.uniform(), 2e4f * random.uniform(), 8900.0f * random.uniform());
+      const float here = before.extinction(p), there = after.extinction(p + glm::vec3(wayM, 0.0));
+      most = std::max(most, static_cast<double>(std::abs(here - there)));
+      greatest = std::max(greatest, static_cast<double>(here));
+    }
+    EXPECT_GT(greatest, 0.02) << fromS;
+    EXPECT_LT(most, 0.3 * greatest) << fromS;  // a step of 64 m and no evolution between would be all of it
+  }
 }
 
 }  // namespace

@@ -130,12 +130,13 @@ TEST(Drift, SheetsShareTheWindAndHaveTheirOwnCover) {
 TEST(Drift, MovesVolumesAndIsReported) {
   Scene s = testing::cloudyScene(40.0, {weather::Genus::kStratocumulus});
   s.layers[0].windSpeedMps = 10.0;
-  const auto drifted = [&](double seconds) {
-    return glm::dvec2(buildSky(s, seconds).clouds->layers()[0].driftM);
-  };
+  const auto drifted = [&](double seconds) { return windDriftM(s, weatherOf(s).layers[0], seconds); };
   const glm::dvec2 start = drifted(0.0), straight = drifted(7200.0);
   s.drift.windDeg = 90.0;
   EXPECT_EQ(drifted(0.0), start);
+  field::CloudLayer moved = buildSky(s, 0.0).clouds->layers()[0];
+  field::moveLayer(moved, drifted(7200.0));
+  EXPECT_NEAR(glm::distance(moved.driftM, buildSky(s, 7200.0).clouds->layers()[0].driftM), 0.0f, 0.1f);
   const glm::dvec2 expected = start + 10.0 * windPath(s.drift, windSeed(s), s.layers[0].windFromDeg, 7200.0);
   EXPECT_NEAR(glm::distance(drifted(7200.0), expected), 0.0, 1.0);
   EXPECT_GT(glm::distance(straight, expected), 1000.0);
