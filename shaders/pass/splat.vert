@@ -25,6 +25,7 @@ void main() {
   gl_Position = picture || f.share < kSplatClose
                     ? uClipFromEnu * vec4(f.centreM * (f.right * vRay.x + f.up * vRay.y + f.forward), 1.0)
                     : vec4(corner, 0.0, 1.0);
+  gl_Position.z = 0.0;                    // within every engine's near and far plane
   vLight = (iMatter.yz + 0.5 * texels + 0.5 * corner * (texels - 1.0)) * uPerTexel;
   vBall = vec4(1.0 / f.share, picture ? 0.0 : iMatter.x * iBall.w, iBall.w, picture ? 1.0 : 0.0);
   vFrame = mat3(f.right, f.up, f.forward);

@@ -58,11 +58,11 @@ void LiveSplats::lookFrom(const scene::SkyState& state, const glm::dvec3& eyeM) 
 }
 
 float LiveSplats::lightFrom(const glm::vec3& direction) const {
-  const glm::dvec3 d(direction), eye(0.0, 0.0, eyeM_->z);
+  const glm::dvec3 d(direction);
   double depth = 0.0;
   for (std::size_t i = 0; i < shadowBalls_.clouds.size(); ++i) {
     double own = 0.0;
-    for (const field::Metaball& b : shadowBalls_.ballsOf(i)) own += field::columnAlong(b, eye, d);
+    for (const field::Metaball& b : shadowBalls_.ballsOf(i)) own += field::columnAlong(b, *eyeM_, d);
     depth += std::max(own, 0.0);
   }
   return static_cast<float>(std::exp(-depth));
