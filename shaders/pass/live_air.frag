@@ -26,14 +26,15 @@ void main() {
   vec2 clip = uBlock * gl_FragCoord.xy / uSizePx * 2.0 - 1.0;
   vec3 dir = normalize(uEnuFromCamera * vec3(uRayScale.xy * clip + uRayScale.zw, -1.0));
   // Texels at the horizon are read from both of its sides, and hold what is there on either.
-  float horizon = -sqrt(uEyeM * (2.0 * uEarthRadiusM + uEyeM)) / (uEarthRadiusM + uEyeM), margin = 2.0 * uBlock * uPixelRad;
+  float aboveM = max(uEyeM, 0.0);  // an engine's ground may lie lower
+  float horizon = -sqrt(aboveM * (2.0 * uEarthRadiusM + aboveM)) / (uEarthRadiusM + aboveM), margin = 2.0 * uBlock * uPixelRad;
   int first = uEyeM < uCloudTopM && dir.z > horizon - margin ? 0 : 1, last = dir.z < horizon + margin ? 2 : 1;
   outAir = vec4(0.0, 0.0, 0.0, 1.0);
   for (int side = first; side < last; ++side) {  // a loop, as a rasteriser on the processor runs both sides of a branch
     bool sky = side == 0;
     vec3 there = normalize(vec3(vec2(dir), sky ? max(dir.z, horizon) : min(dir.z, horizon - 1e-6)));
     vec2 crossings = sphereCrossings(sky ? uCloudTopM : 0.0, there.z);
-    float distanceM = sky ? crossings.y : crossings.x;
+    float distanceM = max(sky ? crossings.y : crossings.x, 0.0);
     vec3 inscatter, through;
     aerialLit(there, distanceM, inscatter, through);
     float lit = litAir(there, distanceM, through);

@@ -358,6 +358,7 @@ void LiveSky::Impl::drawSheets(const shading::View& view, const shading::ViewPar
 }
 
 void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
+  if (target.area.width < 1 || target.area.height < 1) return;
   Impl& m = *impl_;
   const gpu::StateGuard guard;
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);

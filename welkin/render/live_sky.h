@@ -54,7 +54,8 @@ class LiveSky {
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);
 
-  // Draws all of it over the target, far to near, as linear Rec. 709. After update().
+  // Draws all of it over the target, far to near, as linear Rec. 709; nothing where its area is empty, as a
+  // minimised window's is. After update().
   void draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options = {});
 
   // The air and the clouds in front of what the engine draws itself, by distance: for its glass, water and

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/testing/foreign_engine.h"
@@ -246,6 +247,40 @@ TEST_F(LiveVolumesTest, ViewsDoNotDisturbEachOther) {
     after(both, other, 1, 1);
   }
   EXPECT_EQ(after(both, view, 1, 0).data, after(alone, view, 21, 0).data);
+}
+
+// A minimised window has no pixels.
+TEST_F(LiveVolumesTest, AnEmptyAreaIsNoError) {
+  const scene::Scene s = cumulus();
+  const shading::View view = viewOf(s);
+  LiveSky sky, other;
+  sky.update(s, 0.0);
+  other.update(s, 0.0);
+  const Image<float> before = after(sky, view, 1);
+  for (const auto& [width, height] : {std::pair{0, 0}, {0, 9}, {16, 0}})
+    EXPECT_NO_THROW(sky.draw(view, gpu::Target(target.id(), {0, 0, width, height}), {.flare = 0.01f}));
+  EXPECT_EQ(target.readPicture(0, 3).data, before.data);
+  after(other, view, 1);
+  EXPECT_EQ(after(sky, view, 1).data, after(other, view, 1).data);
+}
+
+// An engine's ground may lie lower than the sky's. In haze half of the sky has the shadows of its clouds.
+TEST_F(LiveVolumesTest, AnEyeBelowTheGroundSeesTheSameAir) {
+  scene::Scene s = looking(sized(cloudyScene(25.0, {Genus::kCumulus}, 6.0), kWidth, kHeight), 90.0, 4.0);
+  s.visibilityM = 5000.0;
+  const auto from = [&](double eyeM) {
+    shading::View view = viewOf(s);
+    view.view[3] = view.view * glm::dvec4(0.0, 0.0, s.camera.eyeM - eyeM, 1.0);
+    LiveSky sky;
+    sky.update(s, 0.0);
+    return after(sky, view, 4 * kRound);
+  };
+  const Image<float> above = from(0.05);
+  for (const auto& [eyeM, most] : {std::pair{-0.05, 0.003}, {-2.0, 0.012}}) {
+    const Image<float> below = from(eyeM);
+    EXPECT_EQ(firstBadValue(below), -1);
+    EXPECT_LT(relativeDifference(below, above), most) << eyeM;
+  }
 }
 
 // The shadows of clouds on the ground are those of the still, though drawn elsewhere.
