@@ -117,7 +117,6 @@ void FluencePass::store(int cascade) {
     store_.set("uCell", k);
     triangle_.draw(store_, slice_);
   }
-  if (cascade == 0) front_ = 1 - front_;
 }
 
 }  // namespace welkin::render

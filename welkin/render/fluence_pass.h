@@ -19,11 +19,13 @@ class FluencePass {
  public:
   FluencePass();
 
-  // Steps 0 to steps() - 1 in this order make the fluence of a volume that is swept; until they are done,
-  // fluence() is what was made before. After the first of a layout nothing is compiled or allocated.
+  // Steps 0 to steps() - 1 in this order make the fluence of a volume that is swept; until exchange(), which
+  // comes with the volume's own, fluence() is what was made before. After the first of a layout nothing is
+  // compiled or allocated.
   void begin(const shading::LightVolumeLayout& volume);
   int steps() const;
   void step(int index, const gpu::Texture3D& lightVolume);
+  void exchange() { front_ = 1 - front_; }
 
   // One channel, cascades one above another along z.
   const gpu::Texture3D& fluence() const { return fluences_[front_]; }

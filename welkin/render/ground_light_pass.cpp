@@ -53,7 +53,6 @@ void GroundLightPass::step(int index, const gpu::Texture3D& lightVolume) {
     columnsProgram_.bind("uRows", rows_.texture);
     columnsProgram_.bind("uMean", mean_.texture);
     triangle_.draw(columnsProgram_, shares_[1 - front_].target);
-    front_ = 1 - front_;
   }
 }
 

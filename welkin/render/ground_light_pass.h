@@ -19,11 +19,13 @@ class GroundLightPass {
  public:
   GroundLightPass();
 
-  // Steps 0 to steps() - 1 in this order make the shares of a volume that is swept; until they are done,
-  // shares() is what was made before. After the first of a layout nothing is compiled or allocated.
+  // Steps 0 to steps() - 1 in this order make the shares of a volume that is swept; until exchange(), which
+  // comes with the volume's own, shares() is what was made before. After the first of a layout nothing is
+  // compiled or allocated.
   void begin(const shading::LightVolumeLayout& volume);
   int steps() const { return steps_; }
   void step(int index, const gpu::Texture3D& lightVolume);
+  void exchange() { front_ = 1 - front_; }
 
   const gpu::Texture2D& shares() const { return shares_[front_].texture; }
 

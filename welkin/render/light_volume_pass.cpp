@@ -92,6 +92,8 @@ bool LightVolumePass::advance(int parts, const CloudTextures& clouds) {
   }
   if (inProgress()) return false;
   front_ = 1 - front_;
+  if (spreads() > 0) fluence_.exchange();
+  if (ground_.steps() > 0) ground_.exchange();
   return true;
 }
 

@@ -31,8 +31,9 @@ class LightVolumePass {
             const CloudTextures& clouds, Spread spread = Spread::kYes);
 
   // The same a few slices at a time, for frame loops: begin(), then advance() until it returns true. Until
-  // then volume() is what was swept before. clouds: the layers, shading::cloudUniforms() or what has changed
-  // of them. After the first volume of a layout nothing is compiled or allocated.
+  // then volume(), fluence() and groundShares() are what was swept before. clouds: the layers,
+  // shading::cloudUniforms() or what has changed of them. After the first volume of a layout nothing is
+  // compiled or allocated.
   void begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout,
              Spread spread = Spread::kYes);
   bool advance(int parts, const CloudTextures& clouds);  // about `parts` of kParts

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -219,6 +220,28 @@ TEST(LightVolume, InPartsItIsTheSame) {
   EXPECT_EQ(pass.volume().read().data, whole.texels.data);
   EXPECT_EQ(pass.fluence().read().data, whole.fluence.data);
   EXPECT_FALSE(pass.inProgress());
+  for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
+}
+
+// However few steps are taken at a time: fluence and light on the ground lie where the volume does.
+TEST(LightVolume, AllOfItIsExchangedAtOnce) {
+  const scene::SkyState state = scene::buildSky(cloudyScene(30.0, {Genus::kCumulus}), 0.0);
+  const shading::LightVolumeLayout layout = shading::lightVolumeLayout(state);
+  gpu::Context context({.debug = true});
+  const CloudTextures clouds(state.clouds->sharedNoise());
+  LightVolumePass pass;
+  pass.draw(state, layout, clouds);
+  const auto shown = [&] {
+    return std::array{pass.volume().id(), pass.fluence().id(), pass.groundShares().id()};
+  };
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    pass.begin(shading::cloudUniforms(state), layout);
+    const auto before = shown();
+    int parts = 1;
+    for (; !pass.advance(1, clouds); ++parts) ASSERT_EQ(shown(), before);
+    EXPECT_GT(parts, LightVolumePass::kParts / 2);
+    for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NE(shown()[i], before[i]) << i;
+  }
   for (const std::string& error : context.takeErrors()) ADD_FAILURE() << error;
 }
 
