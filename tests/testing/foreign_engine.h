@@ -16,9 +16,11 @@ class ForeignEngine {
   ForeignEngine(const ForeignEngine&) = delete;
   ForeignEngine& operator=(const ForeignEngine&) = delete;
 
-  void restore() const;                              // sets its state anew
-  std::map<std::string, std::string> state() const;  // all of it as it is now, by name
-  unsigned framebuffer() const;                      // 16 x 8 pixels, RGBA8
+  void restore() const;                               // sets its state anew
+  static std::map<std::string, std::string> state();  // all of the context's as it is now, by name
+  unsigned framebuffer() const;                       // 16 x 8 pixels, RGBA8
+  static void makeError();                            // one that is the engine's to find
+  static bool hasError();                             // and takes it
 
  private:
   struct Objects;

@@ -104,5 +104,24 @@ TEST_F(MeshTest, AnEnginesStateComesBack) {
   EXPECT_EQ(engine.state(), before);
 }
 
+// Whatever draws and uploads depend on is as it was made; what is bound they bind themselves.
+TEST_F(MeshTest, InsideAGuardTheContextIsFresh) {
+  auto fresh = testing::ForeignEngine::state();
+  const testing::ForeignEngine engine;
+  const auto engines = engine.state();
+  const StateGuard guard;
+  auto inside = engine.state();
+  int told = 0;
+  for (const auto& [name, value] : fresh) {
+    told += engines.at(name) != value;
+    for (const char* kind :
+         {"unit ", "image ", "viewport", "scissor box", "blend ", "stencil ", "depth mask", "depth fails",
+          "vertex array", "array buffer", "draw framebuffer", "read framebuffer", "program", "seamless"})
+      if (name.starts_with(kind)) inside[name] = value;
+    EXPECT_EQ(inside[name], value) << name;
+  }
+  EXPECT_GT(told, 60);
+}
+
 }  // namespace
 }  // namespace welkin::gpu

@@ -429,6 +429,26 @@ TEST_F(LiveSkyTest, UpdatesWithVolumesAllocateNothing) {
   EXPECT_EQ(sky.state().calibration, scene::buildSky(s, 49 * step).calibration);
 }
 
+// Neither in what is uploaded nor in what is drawn.
+TEST_F(LiveSkyTest, AnEnginesStateDoesNotShow) {
+  for (const scene::Scene& s : {thinScene(), heapedScene(), marchedScene()}) {
+    Image<float> expected;
+    {
+      LiveSky sky;
+      sky.update(s, 0.0);
+      expected = drawn(sky);
+    }
+    target.clear();
+    {
+      const ForeignEngine engine;
+      LiveSky sky;
+      sky.update(s, 0.0);
+      sky.draw(shading::viewOf(sky.state()), target);
+    }
+    EXPECT_EQ(target.readPicture(0, 3).data, expected.data);
+  }
+}
+
 // Only the clouds, over what an engine has drawn.
 TEST_F(LiveSkyTest, WithoutABackdropWhatIsThereShowsThrough) {
   scene::Scene s = thinScene();
