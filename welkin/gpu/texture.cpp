@@ -23,6 +23,16 @@ void setAnisotropy(GLenum target, float wanted) {
   glTexParameterf(target, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(wanted, most));
 }
 
+// Whether a level of the texture that is bound was made, all levels before it being so: one that was refused
+// has no size. OpenGL's errors do not tell, as there may be an engine's among them, which are its own to
+// read.
+bool has(GLenum target, int level) {
+  GLint width = 0;
+  glGetTexLevelParameteriv(target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_NEGATIVE_Z : target, level,
+                           GL_TEXTURE_WIDTH, &width);
+  return width > 0;
+}
+
 int levelCount(int width, int height, int depth) {
   int levels = 1;
   for (int n = std::max({width, height, depth}); n > 1; n /= 2) ++levels;
@@ -62,8 +72,6 @@ Texture::Texture(unsigned target, int width, int height, int depth, const Textur
                    (volume ? " x " + std::to_string(depth) : "") +
                    " texels cannot be made; this device does 1 to " + std::to_string(largest) + " a side");
 
-  while (glGetError() != GL_NO_ERROR) {
-  }  // so that what is found below is ours
   glGenTextures(1, &id_);
   glBindTexture(target, id_);
   const bool mipmap = options.filter == Filter::kMipmap;
@@ -93,7 +101,8 @@ Texture::Texture(unsigned target, int width, int height, int depth, const Textur
     else
       glTexImage2D(target, level, format, w, h, 0, client, type, nullptr);
   }
-  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+  if (!has(target, levels - 1)) {
+    const GLenum error = glGetError();
     glDeleteTextures(1, &id_);
     throw GpuError("a texture of " + std::to_string(width) + " x " + std::to_string(height) +
                    (volume ? " x " + std::to_string(depth) : "") + " texels was refused: " +

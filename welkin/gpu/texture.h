@@ -73,7 +73,8 @@ class Texture {
 class Texture2D : public Texture {
  public:
   Texture2D() = default;  // no texture: for members that are filled later
-  // Allocated, its contents undefined. Throws GpuError for sizes that the device does not do, or no memory.
+  // Allocated, its contents undefined. Throws GpuError for sizes that the device does not do, or no memory;
+  // only then is an OpenGL error taken that was there before.
   Texture2D(int width, int height, const TextureOptions& options = {});
   Texture2D(const Image<float>& image, const TextureOptions& options);
 

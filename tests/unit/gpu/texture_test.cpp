@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
+#include "tests/testing/foreign_engine.h"
 #include "welkin/core/error.h"
 #include "welkin/gpu/context.h"
 #include "welkin/gpu/draw.h"
@@ -112,6 +114,32 @@ TEST_F(TextureTest, AnisotropyKeepsWhatLiesAslant) {
   EXPECT_LT(contrast(1.0f), 0.2f);
   if (!context.isSoftware() && contrast(8.0f) == contrast(1.0f)) GTEST_SKIP() << "the driver has none";
   EXPECT_GT(contrast(8.0f), 0.8f);
+}
+
+// Even where a texture cannot be made for its size.
+TEST_F(TextureTest, AnEnginesErrorsAreLeftToIt) {
+  testing::ForeignEngine::makeError();
+  const Texture2D picture(4, 4, {.filter = Filter::kMipmap});
+  const Texture3D volume(4, 4, 4, {});
+  std::array<Image<float>, 6> faces;
+  for (auto& face : faces) face = Image<float>(4, 4, 1);
+  const TextureCube cube(faces, {.filter = Filter::kMipmap});
+  EXPECT_THROW(Texture2D(1 << 24, 4), GpuError);
+  EXPECT_TRUE(testing::ForeignEngine::hasError());
+  EXPECT_FALSE(testing::ForeignEngine::hasError());
+  context.takeErrors();  // the driver has recorded it as well
+}
+
+TEST_F(TextureTest, NoMemoryIsAnError) {
+  if (!context.isSoftware()) GTEST_SKIP() << "others may have it";
+  const int most = context.maxTextureSize3D();
+  try {
+    const Texture3D volume(most, most, most, {.format = Format::kRgba32F});
+    FAIL() << "was made";
+  } catch (const GpuError& error) {
+    EXPECT_NE(std::string(error.what()).find("out of memory"), std::string::npos) << error.what();
+  }
+  context.takeErrors();
 }
 
 TEST_F(TextureTest, ImpossibleCubesAreErrors) {
