@@ -92,6 +92,16 @@ void compile(const Shader& shader, const ShaderSource& source) {
   throw GpuError(nameOf(source) + " does not compile: " + summary(withFileNames(log, source)));
 }
 
+// That a shader declares, those that the preprocessor leaves out among them.
+int texturesIn(std::string_view text) {
+  constexpr std::string_view kDeclaration = "uniform sampler";
+  int count = 0;
+  for (std::size_t at = text.find(kDeclaration); at != std::string_view::npos;
+       at = text.find(kDeclaration, at + kDeclaration.size()))
+    ++count;
+  return count;
+}
+
 bool isSampler(GLenum type) {
   switch (type) {
     case GL_SAMPLER_2D:
@@ -124,16 +134,18 @@ Program Program::graphics(const ShaderSource& vertex, const ShaderSource& fragme
   const Shader vert(glCreateShader(GL_VERTEX_SHADER)), frag(glCreateShader(GL_FRAGMENT_SHADER));
   compile(vert, vertex);
   compile(frag, fragment);
-  return link(std::array{vert.id, frag.id}, nameOf(vertex) + " with " + nameOf(fragment));
+  return link(std::array{vert.id, frag.id}, nameOf(vertex) + " with " + nameOf(fragment),
+              std::max(texturesIn(vertex.text), texturesIn(fragment.text)));
 }
 
 Program Program::compute(const ShaderSource& source) {
   const Shader shader(glCreateShader(GL_COMPUTE_SHADER));
   compile(shader, source);
-  return link(std::array{shader.id}, nameOf(source));
+  return link(std::array{shader.id}, nameOf(source), texturesIn(source.text));
 }
 
-Program Program::link(std::span<const unsigned> shaders, std::string_view name) {
+// textures: as many as a shader of it declares.
+Program Program::link(std::span<const unsigned> shaders, std::string_view name, int textures) {
   Program program(glCreateProgram());
   for (const unsigned shader : shaders) glAttachShader(program.id_, shader);
   glLinkProgram(program.id_);
@@ -145,7 +157,13 @@ Program Program::link(std::span<const unsigned> shaders, std::string_view name) 
     std::string log(static_cast<std::size_t>(std::max(logLength, 1)), '\0');
     glGetProgramInfoLog(program.id_, logLength, nullptr, log.data());
     log.resize(std::min(log.find('\0'), log.size()));
-    throw GpuError(std::string(name) + " does not link: " + summary(log));
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &most);
+    std::string limit;
+    if (textures > most)
+      limit = "it names up to " + std::to_string(textures) + " textures, and this device gives a shader " +
+              std::to_string(most) + ": ";
+    throw GpuError(std::string(name) + " does not link: " + limit + summary(log));
   }
   program.collectUniforms();
   return program;

@@ -68,7 +68,7 @@ class Program {
     int unit = -1;  // of samplers
   };
   explicit Program(unsigned id) : id_(id) {}
-  static Program link(std::span<const unsigned> shaders, std::string_view name);
+  static Program link(std::span<const unsigned> shaders, std::string_view name, int textures);
   void collectUniforms();
   int locate(std::string_view name) const;  // makes the program current; -1: not in it
 

@@ -136,6 +136,24 @@ TEST_F(Gpu, TextureRoundTrips) {
   EXPECT_EQ(Texture3D(volume, {.format = Format::kR32F}).read().data, volume.data);
 }
 
+// More than any device has; OpenGL 3.3 promises 16.
+TEST_F(Gpu, TooManyTexturesAreAnErrorWithTheDevicesLimit) {
+  std::string uniforms, sum = "vec4(0.0)";
+  for (int i = 0; i < 300; ++i) {
+    const std::string name = "uTexture" + std::to_string(i);
+    uniforms += "uniform sampler2D " + name + ";\n";
+    sum += " + texture(" + name + ", gl_FragCoord.xy)";
+  }
+  try {
+    fragmentProgram(uniforms + "void main() { oColour = " + sum + "; }\n", "pass/many.frag");
+    FAIL() << "linked";
+  } catch (const GpuError& error) {
+    EXPECT_NE(std::string(error.what()).find("300 textures, and this device gives a shader "),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(Gpu, ImpossibleSizesAreErrors) {
   EXPECT_THROW(Texture2D(0, 4), GpuError);
   EXPECT_THROW(Texture2D(1 << 24, 4), GpuError);
