@@ -101,16 +101,72 @@ class BlockMeans {
   Image<float> means_;
 };
 
+// Columns [from, from + count) of a picture that goes around.
+template <class Value>
+Image<Value> columnsOf(const Image<Value>& picture, int from, int count) {
+  Image<Value> piece(count, picture.height, picture.channels);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < count; ++x) {
+      const int at = ((from + x) % picture.width + picture.width) % picture.width;
+      std::copy_n(&picture.data[picture.index(at, y)], picture.channels, &piece.data[piece.index(x, y)]);
+    }
+  return piece;
+}
+
+// Writes columns [skipped, skipped + count) of a piece to where they belong.
+template <class Value>
+void putColumns(const Image<Value>& piece, int skipped, int count, Image<Value>& picture, int to) {
+  for (int y = 0; y < piece.height; ++y)
+    std::copy_n(&piece.data[piece.index(skipped, y)], static_cast<std::size_t>(count) * piece.channels,
+                &picture.data[picture.index(to, y)]);
+}
+
+// What a function of plane pictures gives for those of another form: for each face, or with the columns
+// beyond its edges.
+template <class Function, class... Value>
+auto byForm(Form form, const Function& function, const Image<Value>&... pictures) {
+  const int width = std::max({pictures.width...}), height = std::max({pictures.height...});
+  const int pieces = form == Form::kSixFaces ? 6 : 1, count = width / pieces;
+  const int beyond = form == Form::kAround ? kBlockPx : 0;
+  decltype(function(pictures...)) all;
+  for (int x = 0; x < pieces * count; x += count) {
+    const auto piece = function(columnsOf(pictures, x - beyond, count + 2 * beyond)...);
+    if (x == 0) all = {width, height, piece.channels};
+    putColumns(piece, beyond, count, all, x);
+  }
+  return all;
+}
+
 }  // namespace
 
-Image<std::uint8_t> firstHalf(int width, int height) {
+Form formOf(scene::Projection projection) {
+  switch (projection) {
+    case scene::Projection::kEquirect:
+      return Form::kAround;
+    case scene::Projection::kCubemap:
+      return Form::kSixFaces;
+    default:
+      return Form::kPlane;
+  }
+}
+
+Image<std::uint8_t> firstHalf(int width, int height, Form form) {
+  if (form == Form::kSixFaces)
+    return byForm(
+        form, [](const auto& face) { return firstHalf(face.width, face.height); },
+        Image<std::uint8_t>(width, height, 1));
   Image<std::uint8_t> half(width, height, 1);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) half.at(x, y) = (x / kBlockPx + y / kBlockPx) % 2 == 0 ? 1 : 0;
   return half;
 }
 
-Image<std::uint8_t> secondHalf(const Image<float>& half, const Image<float>& hidden, float tolerance) {
+Image<std::uint8_t> secondHalf(const Image<float>& half, const Image<float>& hidden, float tolerance,
+                               Form form) {
+  // Nothing is told at an edge, around or not.
+  if (form == Form::kSixFaces)
+    return byForm(
+        form, [&](const auto& h, const auto& over) { return secondHalf(h, over, tolerance); }, half, hidden);
   const BlockMeans means(half);
   Image<std::uint8_t> wanted(half.width, half.height, 1);
   const Image<std::uint8_t> rough = roughBlocks(half, tolerance);
@@ -142,7 +198,17 @@ Image<std::uint8_t> secondHalf(const Image<float>& half, const Image<float>& hid
   return wanted;
 }
 
-Image<std::uint8_t> fillBlocks(Image<float>& first) {
+Image<std::uint8_t> fillBlocks(Image<float>& first, Form form) {
+  if (form == Form::kSixFaces) {
+    Image<std::uint8_t> all(first.width, first.height, 1);
+    const int side = first.width / 6;
+    for (int x = 0; x < 6 * side; x += side) {
+      Image<float> face = columnsOf(first, x, side);
+      putColumns(fillBlocks(face), 0, side, all, x);
+      putColumns(face, 0, side, first, x);
+    }
+    return all;
+  }
   const BlockMeans means(first);
   Image<std::uint8_t> filled(first.width, first.height, 1);
   parallelFor(static_cast<std::size_t>(means.height()), 4, [&](std::size_t begin, std::size_t end) {
@@ -172,12 +238,18 @@ Image<std::uint8_t> fillBlocks(Image<float>& first) {
   return filled;
 }
 
-Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance) {
+Image<std::uint8_t> roughBlocks(const Image<float>& first, float tolerance, Form form) {
+  if (form != Form::kPlane)
+    return byForm(form, [&](const auto& piece) { return roughBlocks(piece, tolerance); }, first);
   return blocksOver(first.width, first.height, tolerance, 4.0f,
                     [&](int x, int y) { return roughness(first, x, y); });
 }
 
-Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<float>& sums, float tolerance) {
+Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<float>& sums, float tolerance,
+                                    Form form) {
+  if (form != Form::kPlane)
+    return byForm(
+        form, [&](const auto& b, const auto& s) { return unsettledBlocks(b, s, tolerance); }, before, sums);
   // Mean luminance of both halves; pixels that have got none in between count as agreeing.
   const int width = sums.width, height = sums.height;
   Image<float> halves(width, height, 2);
@@ -202,7 +274,9 @@ Image<std::uint8_t> unsettledBlocks(const Image<float>& before, const Image<floa
   });
 }
 
-Image<float> resolve(const Image<float>& sums, float noise) {
+Image<float> resolve(const Image<float>& sums, float noise, Form form) {
+  if (form != Form::kPlane)
+    return byForm(form, [&](const auto& piece) { return resolve(piece, noise); }, sums);
   const int width = sums.width, height = sums.height;
   Image<float> mean(width, height, 3), picture(width, height, 3);
   parallelFor(static_cast<std::size_t>(width) * height, 4096, [&](std::size_t begin, std::size_t end) {

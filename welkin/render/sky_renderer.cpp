@@ -168,6 +168,7 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   auto done = [&](const char* pass) { picture.passes.push_back({pass, watch.finishedMs()}); };
   const int width = static_cast<int>(state.scene.output.width),
             height = static_cast<int>(state.scene.output.height);
+  const Form form = formOf(state.scene.camera.projection);
 
   if (!clouds || clouds->noise() != state.clouds->sharedNoise()) clouds.emplace(state.clouds->sharedNoise());
   clouds->setBalls(balls);
@@ -183,8 +184,8 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
   done("light volume");
 
   shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
-  // Sheets and splats alone have no grain for the resolve to take out.
-  if ((!sheets.empty() || !splats.empty()) && layout.bands.empty()) settings.noise = 1e-4f;
+  // Without volumes there is no grain for the resolve to take out.
+  if (layout.bands.empty()) settings.noise = 1e-4f;
   gpu::Program& p = programFor(state, layout, settings, false);
   setUniforms(p, shading::projectorUniforms(state));
   bind(p, state);
@@ -222,18 +223,18 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
     std::ranges::fill(everywhere.data, 1);
     draw(0, everywhere, 0.0, 1.0);
     before = target.readPicture();
-    wanted = roughBlocks(before, settings.tolerance);
+    wanted = roughBlocks(before, settings.tolerance, form);
   } else {
     double begin = 0.5;
-    draw(0, firstHalf(width, height), 0.0, begin);
+    draw(0, firstHalf(width, height, form), 0.0, begin);
     Image<std::uint8_t> needed =
-        secondHalf(target.readPicture(), target.readPicture(1, 1), settings.tolerance);
+        secondHalf(target.readPicture(), target.readPicture(1, 1), settings.tolerance, form);
     do {
       draw(0, needed, begin, 1.0);
       begin = 1.0;
       before = target.readPicture();
-      const Image<std::uint8_t> filled = fillBlocks(before);
-      wanted = roughBlocks(before, settings.tolerance);
+      const Image<std::uint8_t> filled = fillBlocks(before, form);
+      wanted = roughBlocks(before, settings.tolerance, form);
       needed = bothOf(filled, wanted);
     } while (isAny(needed));
   }
@@ -249,13 +250,13 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
     const bool doubled = std::has_single_bit(static_cast<unsigned>(i + 1));
     if (!doubled || i + 1 == settings.subframes) continue;
     Image<float> now = sums();
-    wanted = unsettledBlocks(before, now, settings.tolerance);
+    wanted = unsettledBlocks(before, now, settings.tolerance, form);
     before = std::move(now);
   }
   if (progress) progress(1.0);  // the picture may have had enough before the last sub-frame
   done("march");
 
-  picture.luminance = resolve(sums(), settings.noise);
+  picture.luminance = resolve(sums(), settings.noise, form);
   if (state.scene.output.flare > 0.0) {
     addFlare(state, layout, picture.luminance);
     done("flare");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace welkin::render {
@@ -143,6 +144,90 @@ TEST(Resolve, TakesDitherOutAndKeepsEdges) {
   const Image<float> picture = resolve(sums, 0.04f);
   for (int y = 2; y < 6; ++y)
     for (int x = 2; x < 30; ++x) EXPECT_NEAR(picture.at(x, y, 1) / (x < 16 ? 1.0f : 4.0f), 1.0f, 0.004f) << x;
+}
+
+// Something to judge everywhere: a wave, and grain.
+Image<float> wave(int width, int height, float phase) {
+  return grey(width, height, [&](int x, int y) {
+    const float grain = 0.03f * static_cast<float>((x * 7 + y * 3) % 5) * (x % 17 < 9 ? 1.0f : 0.0f);
+    return 1.0f + 0.3f * std::sin(0.12f * static_cast<float>(x) + 0.05f * static_cast<float>(y) + phase) +
+           grain;
+  });
+}
+
+Image<float> columns(const Image<float>& picture, int from, int count) {
+  Image<float> piece(count, picture.height, picture.channels);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < count; ++x)
+      for (int c = 0; c < picture.channels; ++c)
+        piece.at(x, y, c) = picture.at((from + x) % picture.width, y, c);
+  return piece;
+}
+
+// No face of a cube knows of those beside it in the picture, whatever its size in blocks.
+TEST(Forms, FacesAreApart) {
+  for (const int side : {3, 30, 32}) {
+    const Image<float> strip = wave(6 * side, side, 0.0f), later = wave(6 * side, side, 0.1f);
+    Image<float> sums = strip;
+    for (std::size_t i = 0; i < sums.data.size(); ++i) sums.data[i] += later.data[i];
+    const auto half = firstHalf(6 * side, side, Form::kSixFaces);
+    Image<float> first = strip;
+    for (std::size_t i = 0; i < first.data.size(); ++i)
+      if (half.data[i / 4] == 0) first.data[i] = 0.0f;
+    const Image<float> cover = hidden(6 * side, side, 1.0f), coverOfFace = hidden(side, side, 1.0f);
+    const auto second = secondHalf(first, cover, 0.05f, Form::kSixFaces);
+    Image<float> whole = strip;
+    for (std::size_t i = 0; i < whole.data.size(); ++i)
+      if (half.data[i / 4] + second.data[i / 4] == 0) whole.data[i] = 0.0f;
+    const Image<float> before = whole;
+    const auto filled = fillBlocks(whole, Form::kSixFaces);
+    const auto rough = roughBlocks(strip, 0.01f, Form::kSixFaces),
+               unsettled = unsettledBlocks(strip, sums, 0.005f, Form::kSixFaces);
+    const Image<float> picture = resolve(sums, 0.04f, Form::kSixFaces);
+    const auto faceOf = [&](const auto& all, int f) {
+      auto face = all;
+      face = {side, side, all.channels};
+      for (int y = 0; y < side; ++y)
+        std::copy_n(&all.data[all.index(f * side, y)], side * all.channels, &face.data[face.index(0, y)]);
+      return face.data;
+    };
+    for (int f = 0; f < 6; ++f) {
+      const auto of = [&](const Image<float>& all) { return columns(all, f * side, side); };
+      EXPECT_EQ(faceOf(half, f), firstHalf(side, side).data);
+      EXPECT_EQ(faceOf(second, f), secondHalf(of(first), coverOfFace, 0.05f).data);
+      Image<float> face = of(before);
+      EXPECT_EQ(faceOf(filled, f), fillBlocks(face).data);
+      EXPECT_EQ(faceOf(whole, f), face.data);
+      EXPECT_EQ(faceOf(rough, f), roughBlocks(of(strip), 0.01f).data);
+      EXPECT_EQ(faceOf(unsettled, f), unsettledBlocks(of(strip), of(sums), 0.005f).data);
+      EXPECT_EQ(faceOf(picture, f), resolve(of(sums), 0.04f).data);
+    }
+  }
+}
+
+// A picture that goes around is the same wherever it is cut open.
+TEST(Forms, AroundThereIsNoSeam) {
+  constexpr int kWide = 64, kTurn = 24;
+  const Image<float> strip = wave(kWide, 16, 0.0f), later = wave(kWide, 16, 0.1f);
+  Image<float> sums = strip;
+  for (std::size_t i = 0; i < sums.data.size(); ++i) sums.data[i] += later.data[i];
+  const auto turned = [&](const Image<float>& picture) { return columns(picture, kTurn, kWide); };
+  EXPECT_EQ(turned(resolve(sums, 0.04f, Form::kAround)).data,
+            resolve(turned(sums), 0.04f, Form::kAround).data);
+  const auto same = [&](const Image<std::uint8_t>& blocks, const Image<std::uint8_t>& ofTurned) {
+    for (int y = 0; y < blocks.height; ++y)
+      for (int x = 0; x < kWide; ++x)
+        if (blocks.at((x + kTurn) % kWide, y) != ofTurned.at(x, y)) return false;
+    return true;
+  };
+  EXPECT_TRUE(
+      same(roughBlocks(strip, 0.01f, Form::kAround), roughBlocks(turned(strip), 0.01f, Form::kAround)));
+  EXPECT_TRUE(same(unsettledBlocks(strip, sums, 0.005f, Form::kAround),
+                   unsettledBlocks(turned(strip), turned(sums), 0.005f, Form::kAround)));
+  // An edge that lies in the seam is one.
+  const auto step = [](int x, int) { return x < 32 ? 1.0f : 2.0f; };
+  EXPECT_EQ(roughBlocks(grey(kWide, 8, step), 0.01f, Form::kAround).at(0, 0), 1);
+  EXPECT_EQ(roughBlocks(grey(kWide, 8, step), 0.01f).at(0, 0), 0);
 }
 
 }  // namespace

@@ -130,6 +130,31 @@ TEST(Projections, ShowTheSameClearSky) {
   RecordProperty("mean", std::to_string(d.mean));
 }
 
+// Faces beside each other in the strip are not neighbours in the sky: their pixels at the border are as good
+// as others. Each is compared with the one in its middle of a picture five times as fine.
+TEST(Projections, FacesOfACubeDoNotBleed) {
+  scene::Scene s = clearScene(3.0);
+  s.output.sunDisc = false;
+  SkyRenderer renderer;
+  const auto drawn = [&](int side) {
+    return renderer.draw(scene::buildSky(projected(s, scene::Projection::kCubemap, 6 * side, side), 0.0))
+        .luminance;
+  };
+  constexpr int kFace = 32, kFiner = 5;
+  const Image<float> coarse = drawn(kFace), fine = drawn(kFiner * kFace);
+  double border = 0.0, inside = 0.0;
+  for (int face = 1; face < 6; ++face)
+    for (int y = 0; y < kFace; ++y) {
+      const auto error = [&](int x) {
+        const glm::vec3 want = pixel(fine, kFiner * x + kFiner / 2, kFiner * y + kFiner / 2);
+        return static_cast<double>(glm::length(pixel(coarse, x, y) - want) / glm::length(want));
+      };
+      border = std::max({border, error(face * kFace - 1), error(face * kFace)});
+      inside = std::max({inside, error(face * kFace - 6), error(face * kFace + 5)});
+    }
+  EXPECT_LT(border, 1.5 * inside + 0.01);
+}
+
 TEST(Projections, ShowTheSameClouds) {
   scene::Scene s = cloudyScene(40.0, {Genus::kStratocumulus, Genus::kCirrus});
   s.output.quality = scene::Quality::kMedium;
