@@ -5,8 +5,6 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-#include <map>
-#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -17,8 +15,11 @@ namespace {
 
 // libepoxy loads the libraries at the first call and ends the process when they are missing. A library may
 // not do that, so they are tried first. The handles are kept: Mesa does not survive being unloaded.
+bool opens(const char* name) {
+  return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+}
+
 void requireLibraries(Api api) {
-  const auto opens = [](const char* name) { return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr; };
   const char* advice =
       "; install libegl1, libgl1, libgles2 and a driver (libegl-mesa0 draws without a graphics card)";
   if (!opens("libEGL.so.1")) throw GpuError(std::string("no EGL: libEGL.so.1 cannot be loaded") + advice);
@@ -59,40 +60,11 @@ std::string eglErrorName() {
   return "EGL error " + std::to_string(error);
 }
 
-// EGL hands out one display for equal arguments, and terminating it ends it for all its users: they are
-// counted.
-std::mutex gDisplayMutex;
-std::map<EGLDisplay, int>& displayUsers() {
-  static std::map<EGLDisplay, int> users;
-  return users;
+// EGL hands out one display for equal arguments, and terminating it ends it for all its users, others than
+// Welkin among them: it stays until the process ends.
+bool initialise(EGLDisplay display) {
+  return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr);
 }
-
-class Display {
- public:
-  Display() = default;
-  explicit Display(EGLDisplay display) {
-    if (display == EGL_NO_DISPLAY) return;
-    std::lock_guard lock(gDisplayMutex);
-    if (!eglInitialize(display, nullptr, nullptr)) return;
-    ++displayUsers()[display];
-    display_ = display;
-  }
-  ~Display() {
-    if (display_ == EGL_NO_DISPLAY) return;
-    std::lock_guard lock(gDisplayMutex);
-    if (--displayUsers()[display_] == 0) eglTerminate(display_);
-  }
-  Display(Display&& other) noexcept : display_(std::exchange(other.display_, EGL_NO_DISPLAY)) {}
-  Display& operator=(Display&& other) noexcept {
-    std::swap(display_, other.display_);
-    return *this;
-  }
-  explicit operator bool() const { return display_ != EGL_NO_DISPLAY; }
-  EGLDisplay get() const { return display_; }
-
- private:
-  EGLDisplay display_ = EGL_NO_DISPLAY;
-};
 
 struct Candidate {
   std::string name;  // for messages
@@ -208,7 +180,7 @@ std::string text(GLenum name) {
 }  // namespace
 
 struct Context::Impl {
-  Display display;
+  EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   Api api = Api::kGl;
   int version = 0;  // major * 10 + minor
@@ -222,14 +194,13 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
   std::string failures;
   for (const Candidate& candidate : candidates()) {
     std::string reason;
-    Display display(candidate.display);
-    if (display) {
-      impl_->context = tryDisplay(display.get(), options, reason);
+    if (initialise(candidate.display)) {
+      impl_->context = tryDisplay(candidate.display, options, reason);
     } else {
       reason = "cannot be opened (" + eglErrorName() + ")";
     }
     if (impl_->context != EGL_NO_CONTEXT) {
-      impl_->display = std::move(display);
+      impl_->display = candidate.display;
       break;
     }
     failures += (failures.empty() ? "" : "; ") + candidate.name + ' ' + reason;
@@ -250,13 +221,13 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
 
 Context::~Context() {
   if (eglGetCurrentContext() == impl_->context)
-    eglMakeCurrent(impl_->display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  eglDestroyContext(impl_->display.get(), impl_->context);
+    eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(impl_->display, impl_->context);
 }
 
 void Context::makeCurrent() {
   eglBindAPI(impl_->api == Api::kGl ? EGL_OPENGL_API : EGL_OPENGL_ES_API);
-  if (!eglMakeCurrent(impl_->display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context))
+  if (!eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context))
     throw GpuError("the graphics context cannot be made current (" + eglErrorName() + ")");
 }
 
@@ -299,6 +270,28 @@ std::vector<std::string> Context::takeErrors() {
   for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
     errors.push_back("glGetError " + std::to_string(error));
   return errors;
+}
+
+struct CurrentGuard::Kept {
+  EGLenum api;
+  EGLDisplay display;
+  EGLContext context;
+  EGLSurface draw, read;
+};
+
+CurrentGuard::CurrentGuard() {
+  if (!opens("libEGL.so.1")) return;  // then nothing is current
+  kept_ = std::make_unique<Kept>(Kept{eglQueryAPI(), eglGetCurrentDisplay(), eglGetCurrentContext(),
+                                      eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ)});
+}
+
+CurrentGuard::~CurrentGuard() {
+  if (!kept_) return;
+  if (eglGetCurrentContext() != kept_->context) {
+    const bool none = kept_->context == EGL_NO_CONTEXT;
+    eglMakeCurrent(none ? eglGetCurrentDisplay() : kept_->display, kept_->draw, kept_->read, kept_->context);
+  }
+  eglBindAPI(kept_->api);
 }
 
 }  // namespace welkin::gpu

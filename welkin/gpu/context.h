@@ -56,4 +56,18 @@ class Context {
   std::unique_ptr<Impl> impl_;
 };
 
+// Whichever context was current in the calling thread when it was made, somebody else's or none, is so again
+// when it goes, and the bound API too.
+class CurrentGuard {
+ public:
+  CurrentGuard();
+  ~CurrentGuard();
+  CurrentGuard(const CurrentGuard&) = delete;
+  CurrentGuard& operator=(const CurrentGuard&) = delete;
+
+ private:
+  struct Kept;
+  std::unique_ptr<Kept> kept_;  // none where there is no EGL
+};
+
 }  // namespace welkin::gpu

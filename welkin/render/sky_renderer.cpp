@@ -87,25 +87,32 @@ struct SkyRenderer::Impl {
                 Image<float>& picture);
 };
 
-SkyRenderer::SkyRenderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+SkyRenderer::SkyRenderer(const RendererOptions& options) {
+  const gpu::CurrentGuard guard;
+  impl_ = std::make_unique<Impl>(options);
+}
 SkyRenderer::~SkyRenderer() {
-  // Another renderer's context may be current; what is deleted must be deleted in its own.
+  const gpu::CurrentGuard guard;
+  // What is deleted must be deleted in its own context.
   try {
     impl_->context.makeCurrent();
   } catch (const GpuError&) {
     // Nothing can be deleted where nothing can be reached.
   }
+  impl_.reset();
 }
 
 std::string SkyRenderer::deviceName() const {
   return impl_->context.deviceName();
 }
 std::vector<std::string> SkyRenderer::takeErrors() {
+  const gpu::CurrentGuard guard;
   impl_->context.makeCurrent();
   return impl_->context.takeErrors();
 }
 
 Picture SkyRenderer::draw(const scene::SkyState& state, const Progress& progress) {
+  const gpu::CurrentGuard guard;
   impl_->context.makeCurrent();
   impl_->updateBox(state.scene.skyBox);
   impl_->sheets.update(state);

@@ -37,7 +37,7 @@ struct RendererOptions {
 };
 
 // Owns a headless graphics context and everything on it. Not thread-safe: use from the thread that made it,
-// beside others if wished.
+// beside others if wished. An application's own EGL context stays current, and its display initialised.
 class SkyRenderer {
  public:
   explicit SkyRenderer(const RendererOptions& options = {});  // throws GpuError where there is no EGL

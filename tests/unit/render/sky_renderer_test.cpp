@@ -11,8 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/testing/foreign_context.h"
 #include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
+#include "welkin/core/error.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::render {
@@ -20,6 +22,31 @@ namespace {
 
 using namespace welkin::testing;
 using weather::Genus;
+
+// That of an application that draws with EGL itself, on the same display.
+TEST(SkyInAnApplication, LeavesItsContextAsItIs) {
+  const ForeignContext application;
+  if (!application.works()) GTEST_SKIP() << "Mesa's platform without a surface is needed";
+  const scene::SkyState state = scene::buildSky(sized(clearScene(30.0), 8, 8), 0.0);
+  {
+    SkyRenderer renderer;
+    EXPECT_TRUE(application.isCurrent());
+    renderer.draw(state);
+    EXPECT_TRUE(application.isCurrent());
+    EXPECT_TRUE(renderer.takeErrors().empty());
+    EXPECT_TRUE(application.isCurrent());
+    EXPECT_THROW(renderer.draw(state, [](double) { throw Interrupted(); }), Interrupted);
+    EXPECT_TRUE(application.isCurrent());
+    application.release();
+    renderer.draw(state);
+    EXPECT_FALSE(application.isCurrent());
+    EXPECT_TRUE(application.makeCurrent());
+  }
+  EXPECT_TRUE(application.isCurrent());
+  application.release();
+  EXPECT_TRUE(application.makeCurrent());
+  EXPECT_TRUE(ForeignContext().works());
+}
 
 // One renderer for all: it must serve any sky after any other.
 class Sky : public ::testing::Test {
