@@ -19,7 +19,7 @@ bool airShadowsKnown() { return uBandCount != 0; }
 // degrees only lights the air behind them as if it had not been turned.
 float litAirAt(vec3 dir, float t) {
   vec3 q = cloudPosition(vec3(0.0, 0.0, uEyeM) + dir * t, uEarthRadiusM);
-  return q.z >= uCloudTopM ? 1.0 : exp(-kDropletAside * cloudDepthToSun(uLightVolume, q));
+  return q.z >= uCloudTopM ? 1.0 : mix(uClearAir, exp(-kDropletAside * cloudDepthToSun(uLightVolume, q)), uKeyCounts);
 }
 
 // The share of what the air of [0, distanceM] would add in the sun that it does add. through: what it lets through.

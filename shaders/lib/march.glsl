@@ -155,6 +155,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   const float rain = 0.0;
   CloudScattering scattered = cloudScattering(depths, view, CloudPlace(ice, cover, place.x, place.y, place.z, place.w), phase, uKeyDirection.z);
 #endif
+  scattered.shares = mix(cloudSkyShares(depths), scattered.shares, uKeyCounts);
   // Light from above comes into a deck through its top, and into a cloud among others through its sides.
   float enteredM = mix(q.z, q.z + (1.0 - place.y) * place.z, cover * cover * cover * cover);
   LightWeights weights = lightWeights(depths, view.cosSun, view.height);
@@ -174,7 +175,7 @@ vec3 cloudSource(int band, vec3 p, vec3 q, CloudPoint point, float detail, First
   sun *= mix(uBandSky[band].w, sheetsSunlight(q), exp(-kDiffuseOnset * depths.toSun));
   above *= vec3(uBandSky[band]);
 #endif
-  return keyLightAt(q.z, p) * sun + above * scattered.shares.x +
+  return uKeyShown * keyLightAt(q.z, p) * sun + above * scattered.shares.x +
          lightFromBelow(weights, dir, q.z) * (groundSharesFrom(q).y * scattered.shares.y);
 }
 

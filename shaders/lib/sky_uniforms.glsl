@@ -8,6 +8,8 @@ uniform float uEarthRadiusM;      // to the ground
 uniform vec3 uSunDirection;
 uniform vec3 uMoonDirection;
 uniform vec3 uKeyDirection;       // towards the light that lights the clouds, sun or moon
+uniform float uKeyCounts;         // by how much it counts from where that comes: less while sun and moon change places
+uniform float uKeyShown;          // how much of its light volumes get
 uniform sampler2D uKeyLight;      // its illuminance through the air, lux, by height and by the sine of its elevation
 uniform float uKeyLightTopM;      // height of the table's end
 uniform float uKeyLightReach;     // sines are those at the eye +- this

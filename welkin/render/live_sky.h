@@ -14,6 +14,9 @@
 // more may sort the stars anew (sky/star_cells.h), some milliseconds, and where time jumps the cover of
 // volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some memory.
 //
+// The air, and the light that clouds get from sky and air, are those of the height of scene.camera.eyeM: a
+// view from far above or below it has its own clouds and horizon, and the sky's brightness of that height.
+//
 // Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
 // sheets and volumes all of them together have their place by the middle of their heights.
 //

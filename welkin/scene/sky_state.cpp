@@ -256,8 +256,10 @@ AmbientLight ambientLight(const SkyState& s) {
   const glm::vec3 skyOnGround = a.above.along[2];
   a.skyLow = skyOnGround / pi;
   a.skyHigh = a.aboveHigh.along[2] / pi;
+  constexpr float kMeanHeight = 0.4f;  // sine, of light from no side
   const CloudShade shade =
-      cloudShade(s.scene, s.weather, *s.clouds, static_cast<double>(s.lights[0].direction.z));
+      cloudShade(s.scene, s.weather, *s.clouds,
+                 static_cast<double>(glm::mix(kMeanHeight, s.lights[0].direction.z, s.keyCounts)));
   glm::vec3 direct(0.0f), onClouds(0.0f);
   for (const sky::Light& light : s.lights) {
     direct += horizontalIlluminance(atmosphere, light, 0.0);
@@ -312,7 +314,8 @@ AmbientLight ambientLight(const SkyState& s) {
       hemisphere(a.ground, -1.0f) +
       fromClouds(onHaze * (skyOnClouds * (through - gaps) + onClouds * (aside * fromAllSides)), cover);
   for (int i = 0; i < 2; ++i)
-    under.along[i] += 2.0f * kOnwards * s.lights[0].direction[i] * (aside * onwards) * onHaze * onClouds;
+    under.along[i] +=
+        2.0f * kOnwards * s.keyCounts * s.lights[0].direction[i] * (aside * onwards) * onHaze * onClouds;
   const AirLight none = airLight(clear + hemisphere(bare, -1.0f));
   a.haze = airLight((1.0f - above) * under + above * over);
   a.cloudGlow = excess(a.haze, none);
@@ -355,9 +358,19 @@ SkyLights lightsAt(const Scene& scene, double secondsAfter) {
   l.ephemeris = sky::ephemeris(
       l.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
   const sky::Light sun = sky::sunLight(l.ephemeris), moon = sky::moonLight(l.ephemeris);
-  // The sun lights the clouds until it stands where its light no longer reaches any of them.
-  l.bySun = l.ephemeris.sun.elevationDeg > -7.0;
+  // The sun lights the clouds until it stands where its light no longer reaches any of them. Twilight is then
+  // ten times as bright as a full moon.
+  constexpr float kChangesAt = -7.0f;
+  const auto sunDeg = static_cast<float>(l.ephemeris.sun.elevationDeg),
+             moonDeg = static_cast<float>(l.ephemeris.moon.elevationDeg);
+  l.bySun = sunDeg > kChangesAt;
   l.lights = l.bySun ? std::array{sun, moon} : std::array{moon, sun};
+  if (l.bySun) {
+    l.keyCounts = glm::smoothstep(kChangesAt, kChangesAt + 2.0f, sunDeg);
+  } else {
+    l.keyCounts = glm::smoothstep(0.0f, 2.0f, kChangesAt - sunDeg) * glm::smoothstep(-1.0f, 3.0f, moonDeg);
+    l.keyShown = glm::smoothstep(0.0f, 1.5f, kChangesAt - sunDeg);
+  }
   return l;
 }
 
@@ -438,6 +451,8 @@ void moveSky(SkyState& s, double secondsAfter) {
   s.ephemeris = lights.ephemeris;
   s.lights = lights.lights;
   s.litBySun = lights.bySun;
+  s.keyCounts = lights.keyCounts;
+  s.keyShown = lights.keyShown;
   s.headingDeg = headingOf(s.scene);
   s.clearSky = clearSkyKeys(s);
   s.ambient = ambientLight(s);

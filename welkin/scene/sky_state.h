@@ -64,6 +64,9 @@ struct SkyLights {
   sky::Ephemeris ephemeris;
   std::array<sky::Light, 2> lights;  // sun and moon; lights[0] is the one that lights the clouds
   bool bySun = true;                 // it is the sun
+  // One takes the other's place while neither lights much: by how much it counts from where lights[0] comes,
+  // and how much of its light volumes get.
+  float keyCounts = 1.0f, keyShown = 1.0f;
 };
 SkyLights lightsAt(const Scene& scene, double secondsAfter);
 
@@ -75,6 +78,7 @@ struct SkyState {
   sky::Ephemeris ephemeris;
   std::array<sky::Light, 2> lights;  // as SkyLights
   bool litBySun = true;
+  float keyCounts = 1.0f, keyShown = 1.0f;
   std::shared_ptr<const sky::Atmosphere> atmosphere;
   std::optional<field::CloudField> clouds;       // always there
   std::shared_ptr<const MetaballSky> metaballs;  // beside them; of all instants

@@ -124,6 +124,8 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   u.put("", "uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
   u.put("", "uKeyDirection", state.lights[0].direction);
+  u.put("", "uKeyCounts", state.keyCounts);
+  u.put("", "uKeyShown", state.keyShown);
   u.put("", "uKeyLightTopM", kKeyLightTopM);
   u.put("", "uKeyLightReach", kKeyLightReach);
   u.put("", "uSkyOnGround", state.ambient.skyOnGround);

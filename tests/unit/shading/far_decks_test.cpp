@@ -31,7 +31,9 @@ TEST(FarDecks, TakeNothingFromAHighSunAndNearlyAllFromALowOne) {
     for (const double degrees : {30.0, 5.0, 2.5, 1.5, 0.8, 0.4, 0.1, 0.0}) {
       const double through = decks.through(heightM, std::sin(radians(degrees)), true);
       EXPECT_LE(through, last + 1e-12) << heightM << " m, " << degrees;
-      if (degrees > 2.1) EXPECT_EQ(through, 1.0) << heightM << " m, " << degrees;
+      if (degrees > 2.1) {
+        EXPECT_EQ(through, 1.0) << heightM << " m, " << degrees;
+      }
       last = through;
     }
     // Above all cloud nothing is in the way.
