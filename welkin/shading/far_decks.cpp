@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "welkin/core/units.h"
-#include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/rain_shafts.h"
 
@@ -37,16 +36,16 @@ FarDecks::FarDecks(const scene::SkyState& state) : radiusM_(state.clouds->earthR
                  cloudM = layers[i].cellM / kClouds;
     // From cloud to cloud, each there with a chance.
     const double passes = 1.0 - cover + cover * std::exp(-kCounts * layers[i].extinction * cloudM);
-    if (passes < 1.0) decks_.push_back({layers[i].baseM, layers[i].topM, -std::log(passes) / cloudM});
+    if (passes < 1.0) decks_[count_++] = {layers[i].baseM, layers[i].topM, -std::log(passes) / cloudM};
   }
   constexpr double kOpen = 0.05;
-  for (const Deck& deck : decks_) openBelow_ &= through(deck.baseM, kFromBelow, false) > kOpen;
+  for (const Deck& deck : decks()) openBelow_ &= through(deck.baseM, kFromBelow, false) > kOpen;
 }
 
 double FarDecks::through(double heightM, double sine, bool towardsLight) const {
   double depth = 0.0;
   const double slope = std::max(std::abs(sine), static_cast<double>(kLeastElevation));
-  for (const Deck& deck : decks_) {
+  for (const Deck& deck : decks()) {
     const double way =
         lengthBelow(deck.topM, heightM, sine, radiusM_) - lengthBelow(deck.baseM, heightM, sine, radiusM_);
     const double line = towardsLight ? deck.topM - std::clamp(heightM, deck.baseM, deck.topM)

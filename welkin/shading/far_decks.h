@@ -8,8 +8,11 @@
 // the clouds that there are in the mean.
 #pragma once
 
-#include <vector>
+#include <array>
+#include <cstddef>
+#include <span>
 
+#include "welkin/field/cloud_field.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::shading {
@@ -20,7 +23,7 @@ class FarDecks {
  public:
   explicit FarDecks(const scene::SkyState& state);
 
-  bool any() const { return !decks_.empty(); }
+  bool any() const { return count_ > 0; }
   // The share of light that is left, [0, 1]. heightM: above the ground; sine: of the light's elevation there;
   // towardsLight: as below, of the light that clouds are lit by.
   double through(double heightM, double sine, bool towardsLight) const;
@@ -35,7 +38,10 @@ class FarDecks {
     double perM;  // what it takes along a long level way, 1/m
   };
   static constexpr double kFromBelow = -0.015;
-  std::vector<Deck> decks_;
+  std::span<const Deck> decks() const { return std::span(decks_).first(count_); }
+
+  std::array<Deck, field::kMaxLayers> decks_{};
+  std::size_t count_ = 0;
   double radiusM_;
   bool openBelow_ = true;
 };

