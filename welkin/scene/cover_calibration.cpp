@@ -206,7 +206,7 @@ std::vector<LayerCalibration> calibrationAt(const Scene& scene, const weather::W
                                             const std::shared_ptr<const field::CloudNoise>& noise,
                                             double secondsAfter) {
   const double interval = coverKeyInterval(scene, weather);
-  const std::vector<LayerCalibration> patterns = firstCoverKey(scene, weather, noise, true).layers;
+  std::vector<LayerCalibration> patterns = firstCoverKey(scene, weather, noise, true).layers;
   if (interval == 0.0) return patterns;
   const double before = std::floor(secondsAfter / interval) * interval;
   std::array<CoverKeyInProgress, 2> keys;
