@@ -3,8 +3,8 @@
 //
 // Three nested squares of columns centred on the eye (cascades), each a stack of slices. Slices lie only where there are layers: a
 // band is a range of heights with cloud, and bands lie on one another in the stack. The texture holds the cascades above one
-// another along z. Channels: depth up the line, straight up, down the line, straight down. The line points to the sun, or away
-// from it when the sun is below the horizon, so that it always goes up.
+// another along z. Channels: depth up the line, straight up, down the line, straight down. The line points to the sun or
+// away from it, so that it always goes up: welkin/shading/far_decks.h.
 
 const int kMaxBands = kMaxLayers;
 const int kCascades = 3;

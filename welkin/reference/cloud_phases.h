@@ -37,7 +37,7 @@ class ColourPhase {
 // scatter. What it leaves is nowhere above 0.3 / sr.
 PhaseSampler dropletPeak(const PhaseSampler& droplets);
 
-// Scatterings by the peak one after the other, drawn from the light's side; sky_tracer.cpp says what for. Of
+// Scatterings by the peak one after the other, drawn from the light's side; sky_paths.cpp says what for. Of
 // `count` with the chance of s^(count - 1) (1 - s), where s is the peak's integral.
 struct PeakChain {
   static constexpr std::size_t kLongest = 24;

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "welkin/render/key_pace.h"
 #include "welkin/scene/cover_calibration.h"
 #include "welkin/scene/sky_state.h"
 
@@ -22,7 +23,7 @@ class CoverAhead {
  private:
   std::optional<double> atS_;  // the key instant under way
   double startedAt_ = 0.0;     // share of the interval that had passed
-  double lastS_ = 0.0;         // the instant of the last call
+  KeyPace pace_;
   scene::CoverKeyInProgress making_;
 };
 

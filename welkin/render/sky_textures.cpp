@@ -115,19 +115,15 @@ void SkyTextures::keep(const scene::SkyState& state, KeyName first, KeyName seco
   if (keys_[1].name != second) make(state, second, keys_[1]);
 }
 
-void SkyTextures::prepareNext(scene::SkyState& state, double before) {
-  constexpr double kReady = 0.9;  // share of the interval by which all is done
-  const bool forward = state.secondsAfter >= lastS_;
-  const double passed = (state.secondsAfter - before) / kKeyS, share = forward ? passed : 1.0 - passed;
-  const KeyName next{forward ? before + 2.0 * kKeyS : before - kKeyS, state.litBySun};
+void SkyTextures::prepareNext(scene::SkyState& state) {
+  pace_.moveTo(state.secondsAfter, kKeyS);
+  const KeyName next{pace_.next(), state.litBySun};
   if (ahead_.name != next) {
-    start(state, next, share);
+    start(state, next, pace_.share());
     return;
   }
-  const double ready = std::max(kReady, 0.5 * (1.0 + ahead_.startedAt));
-  const double done = std::min((share - ahead_.startedAt) / (ready - ahead_.startedAt), 1.0);
   const int rows = ahead_.tables.rows(), all = rows + scene::ClearSkyKeyInProgress::kParts,
-            upTo = static_cast<int>(std::ceil(done * all));
+            upTo = static_cast<int>(std::ceil(pace_.due(ahead_.startedAt) * all));
   ahead_.tables.computeTo(std::min(upTo, rows));
   ahead_.light.computeTo(upTo - rows);
   if (upTo == all) state.clearSkyAhead = ahead_.light.key();
@@ -157,8 +153,7 @@ void SkyTextures::updateLive(scene::SkyState& state) {
     upload(state, blended_);
     shown_ = {first, weight};
   }
-  prepareNext(state, before);
-  lastS_ = state.secondsAfter;
+  prepareNext(state);
 }
 
 void SkyTextures::bind(const gpu::Program& program) const {

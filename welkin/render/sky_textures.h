@@ -9,6 +9,7 @@
 
 #include "welkin/gpu/program.h"
 #include "welkin/gpu/texture.h"
+#include "welkin/render/key_pace.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/sky/atmosphere.h"
 #include "welkin/sky/star_cells.h"
@@ -57,7 +58,7 @@ class SkyTextures {
   void keep(const scene::SkyState& state, KeyName first, KeyName second);
   void make(const scene::SkyState& state, KeyName name, Key& key);
   void start(const scene::SkyState& state, KeyName name, double startedAt);
-  void prepareNext(scene::SkyState& state, double before);
+  void prepareNext(scene::SkyState& state);
   void updatePhases(const scene::SkyState& state);
   void updateLights(const scene::SkyState& state);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
@@ -66,7 +67,7 @@ class SkyTextures {
   double eyeAltitudeM_ = 0.0;
   std::array<Key, 2> keys_;  // before and after the instant
   Ahead ahead_;
-  double lastS_ = 0.0;  // the instant of the last update
+  KeyPace pace_;
   sky::SkyTables blended_;
   Image<float> lightTable_;
   std::optional<std::pair<KeyName, int>> shown_;  // first key instant and weight that are uploaded

@@ -110,6 +110,13 @@ double dropletDiameterUm(const weather::Weather& weather) {
   return diameter > 0.0 ? diameter / weight : kWithoutWater;
 }
 
+glm::vec3 noiseShiftM(const weather::Layer& layer, double lag, double riseMps, float periodM,
+                      double secondsAfter, double fromM) {
+  const auto period = static_cast<double>(periodM);
+  return {field::withinPeriod(-lag * layer.windSpeedMps * secondsAfter, period), 0.0,
+          field::withinPeriod(riseMps * secondsAfter, period) + fromM};
+}
+
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter) {
   const double depth = layer.topM - layer.baseM;
   const Habit habit = habitOf(layer.genus, depth);
@@ -133,7 +140,7 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.shearM = glm::vec2(windDirection * (habit.shear * depth));
   s.along = glm::vec2(windDirection);
   s.stretch = static_cast<float>(habit.stretch);
-  s.cellM = static_cast<float>(12.0 * cell);
+  s.cellM = static_cast<float>(kCloudsAPeriod * cell);
   s.cellWeight = static_cast<float>(habit.cellWeight / weights);
   s.fractalWeight = static_cast<float>(habit.fractalWeight / weights);
   s.patchWeight = static_cast<float>(habit.patchWeight / weights);
@@ -154,13 +161,8 @@ field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, doubl
   s.detailAmount = static_cast<float>(habit.detailAmount);
   // Shapes rise through the cloud and lag behind it; the fine ones faster. So every octave moves against the
   // others and the sum never returns, while any instant can be had directly.
-  const auto shifted = [&](double lag, double riseMps, float periodM) {
-    const auto period = static_cast<double>(periodM);
-    return glm::vec3(field::withinPeriod(-lag * layer.windSpeedMps * secondsAfter, period), 0.0,
-                     field::withinPeriod(riseMps * secondsAfter, period) + offsetZ);
-  };
-  s.shapeShiftM = shifted(kShapeLag, habit.riseMps, s.shapeM);
-  s.detailShiftM = shifted(kDetailLag, 1.8 * habit.riseMps, s.detailM);
+  s.shapeShiftM = noiseShiftM(layer, kShapeLag, habit.riseMps, s.shapeM, secondsAfter, offsetZ);
+  s.detailShiftM = noiseShiftM(layer, kDetailLag, 1.8 * habit.riseMps, s.detailM, secondsAfter, offsetZ);
   s.edge = static_cast<float>(habit.edge / spacing);  // as deep in metres
   s.lift = static_cast<float>(habit.lift);
   // The steepest: tops, and the underside of an anvil.

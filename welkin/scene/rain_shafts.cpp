@@ -116,14 +116,9 @@ field::CloudLayer shaftBeneath(const weather::Weather& weather, const weather::L
   s.shapeTall = 8.0f;
   s.detailM = 5.0f * 90.0f;
   s.detailAmount = 0.12f;
-  const double fallen = -falling.speedMps * secondsAfter / static_cast<double>(s.shapeTall);
-  const auto shifted = [&](double lag, float periodM) {
-    const auto period = static_cast<double>(periodM);
-    return glm::vec3(field::withinPeriod(-lag * layer.windSpeedMps * secondsAfter, period), 0.0,
-                     field::withinPeriod(fallen, period));
-  };
-  s.shapeShiftM = shifted(kShapeLag, s.shapeM);
-  s.detailShiftM = shifted(kDetailLag, s.detailM);
+  const double riseMps = -falling.speedMps / static_cast<double>(s.shapeTall);
+  s.shapeShiftM = noiseShiftM(layer, kShapeLag, riseMps, s.shapeM, secondsAfter);
+  s.detailShiftM = noiseShiftM(layer, kDetailLag, riseMps, s.detailM, secondsAfter);
   s.edge = 0.9f;
   s.lift = 0.0f;
   return s;

@@ -11,6 +11,7 @@
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/optics/phase.h"
+#include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/cover_warnings.h"
 #include "welkin/scene/hazy_deck.h"
 #include "welkin/scene/sheet_texture.h"
@@ -35,7 +36,6 @@ glm::vec3 horizontalIlluminance(const sky::Atmosphere& atmosphere, const sky::Li
 double slabReflectance(double depth, double mu) {
   return 1.0 - (2.0 / 3.0 + mu + (2.0 / 3.0 - mu) * std::exp(-depth / mu)) / (4.0 / 3.0 + depth);
 }
-constexpr double kMeanDensity = 0.5;  // of a layer's clouds, of their extinction
 constexpr double kDiffuseMu = 2.0 / 3.0;
 // Of broken cloud light leaves downwards through the sides: what it sends back is less by a power of the
 // clouds' share of the plane, that grows with how tall they are for their width, and with the sun's height.
@@ -89,7 +89,7 @@ CloudShade cloudShade(const Scene& scene, const weather::Weather& weather, const
     }
     const field::CloudLayer& layer = clouds.layers()[i];
     const double cover = weather.layers[i].oktas / kOktas, depth = layer.topM - layer.baseM;
-    const double tau = depth * layer.extinction, cells = depth / (layer.cellM / 12.0);
+    const double tau = depth * layer.extinction, cells = depth / cloudSpacingM(layer);
     const double overhead = shareOverhead(cover, cells);
     const double depthBySimilarity = (1.0 - optics::dropletAsymmetry()) * kMeanDensity * tau;
     const double thick = depthBySimilarity / kLeaksUpTo,
@@ -359,7 +359,7 @@ SkyLights lightsAt(const Scene& scene, double secondsAfter) {
       l.time, {scene.place.latitudeDeg, scene.place.longitudeDeg, scene.place.altitudeM + scene.camera.eyeM});
   const sky::Light sun = sky::sunLight(l.ephemeris), moon = sky::moonLight(l.ephemeris);
   // The sun lights the clouds until it stands where its light no longer reaches any of them. Twilight is then
-  // ten times as bright as a full moon.
+  // several times as bright as a full moon.
   constexpr float kChangesAt = -7.0f;
   const auto sunDeg = static_cast<float>(l.ephemeris.sun.elevationDeg),
              moonDeg = static_cast<float>(l.ephemeris.moon.elevationDeg);

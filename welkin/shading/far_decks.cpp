@@ -11,11 +11,6 @@
 namespace welkin::shading {
 namespace {
 
-// Of a cloud's extinction, what counts: it is less dense within than at the most, and light that it turns by
-// a few degrees goes on.
-constexpr double kCounts = 0.5;
-constexpr double kClouds = 12.0;  // a layer's cells, in its clouds
-
 // The length of the way s > 0 that is below a height.
 double lengthBelow(double heightM, double from, double sine, double radiusM) {
   const double under = radiusM * sine * radiusM * sine + 2.0 * radiusM * (heightM - from);
@@ -33,9 +28,10 @@ FarDecks::FarDecks(const scene::SkyState& state) : radiusM_(state.clouds->earthR
     const scene::LayerOfField of = scene::layerOfField(state.scene, state.weather, i);
     if (of.isShaft) continue;
     const double cover = std::clamp(state.weather.layers[of.of].oktas / kOktas, 0.0, 1.0),
-                 cloudM = layers[i].cellM / kClouds;
+                 cloudM = scene::cloudSpacingM(layers[i]);
     // From cloud to cloud, each there with a chance.
-    const double passes = 1.0 - cover + cover * std::exp(-kCounts * layers[i].extinction * cloudM);
+    const double passes =
+        1.0 - cover + cover * std::exp(-scene::kMeanDensity * layers[i].extinction * cloudM);
     if (passes < 1.0) decks_[count_++] = {layers[i].baseM, layers[i].topM, -std::log(passes) / cloudM};
   }
   constexpr double kOpen = 0.05;
@@ -43,8 +39,9 @@ FarDecks::FarDecks(const scene::SkyState& state) : radiusM_(state.clouds->earthR
 }
 
 double FarDecks::through(double heightM, double sine, bool towardsLight) const {
+  if (sine >= kLeastElevation) return 1.0;  // the line is longer
   double depth = 0.0;
-  const double slope = std::max(std::abs(sine), static_cast<double>(kLeastElevation));
+  const double slope = std::max(std::abs(sine), kLeastElevation);
   for (const Deck& deck : decks()) {
     const double way =
         lengthBelow(deck.topM, heightM, sine, radiusM_) - lengthBelow(deck.baseM, heightM, sine, radiusM_);

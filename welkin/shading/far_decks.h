@@ -18,7 +18,8 @@
 namespace welkin::shading {
 
 // The sine of two degrees: nearer to level a line would leave the volume before it has crossed a layer.
-inline constexpr float kLeastElevation = 0.035f;
+inline constexpr double kLeastElevation = 0.035;
+
 class FarDecks {
  public:
   explicit FarDecks(const scene::SkyState& state);

@@ -299,7 +299,7 @@ void aimLightVolume(const scene::SkyState& state, LightVolumeLayout& layout) {
   const glm::vec3 d = state.lights[0].direction;
   layout.towardsSun = FarDecks(state).lineTowards(d.z);
   glm::vec3 line = layout.towardsSun ? d : -d;
-  line.z = std::max(line.z, kLeastElevation);
+  line.z = std::max(line.z, static_cast<float>(kLeastElevation));
   layout.line = glm::normalize(line);
   layout.sunOverSky = state.ambient.sunOverSky;
   layout.broken = 1.0f - state.ambient.cover * state.ambient.cover;
