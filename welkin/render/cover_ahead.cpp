@@ -12,14 +12,13 @@ void CoverAhead::prepare(scene::SkyState& state) {
   if (atS_ != pace_.next()) {
     making_.start(state.scene, state.weather, state.clouds->sharedNoise(), state.calibration, pace_.next());
     atS_ = pace_.next();
-    startedAt_ = pace_.share();
     if (!state.coverKeyAhead) {  // room for it
       state.coverKeyAhead = making_.key();
       state.coverKeyAhead->atS = std::numeric_limits<double>::quiet_NaN();
     }
     return;
   }
-  const int upTo = static_cast<int>(std::ceil(pace_.due(startedAt_) * making_.parts()));
+  const int upTo = static_cast<int>(std::ceil(pace_.due() * making_.parts()));
   making_.computeTo(upTo);
   if (upTo == making_.parts()) *state.coverKeyAhead = making_.key();
 }

@@ -15,14 +15,16 @@ namespace welkin::render {
 class CoverAhead {
  public:
   // Forgets what is under way. Before prepare() for another scene.
-  void reset() { atS_.reset(); }
+  void reset() {
+    atS_.reset();
+    pace_ = {};
+  }
   // One portion more of the key instant that comes next, into state.coverKeyAhead once it is complete. Of
   // every frame, after the state has moved. Allocates nothing after the first two calls for a scene.
   void prepare(scene::SkyState& state);
 
  private:
   std::optional<double> atS_;  // the key instant under way
-  double startedAt_ = 0.0;     // share of the interval that had passed
   KeyPace pace_;
   scene::CoverKeyInProgress making_;
 };

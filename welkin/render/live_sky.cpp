@@ -107,6 +107,7 @@ struct LiveSky::Impl {
   void refresh();
   void updateBox(const scene::SkyBox& wanted, const Others& with);
   void updateAmbient();
+  void lookFrom(const shading::ViewParts& view, unsigned number);
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
                    const LiveOptions& options);
@@ -238,6 +239,14 @@ void LiveSky::Impl::updateAmbient() {
   }
 }
 
+// Before anything of a view is drawn.
+void LiveSky::Impl::lookFrom(const shading::ViewParts& view, unsigned number) {
+  const double eyeM = view.eyeM.z;
+  const scene::EyeAir air =
+      sheets.empty() ? scene::airAbout(*state, eyeM) : shading::airUnder(*state, inSky, underSheets, eyeM);
+  tables.lookFrom(*state, air, eyeM, number);
+}
+
 void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Target& target,
                                  const LiveOptions& options) {
   if (others.volumes) volumes->shadeAir(options.view, *state, tables, view);
@@ -254,7 +263,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
        shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
       state->scene.output.sunDisc);
   tables.makeStars(*state, view.pixelRad);
-  const bool beyond = SkyTextures::isAnythingBeyond(*state, view.pixelRad);
+  const bool beyond = SkyTextures::isAnythingBeyond(*state, view.pixelRad, view.eyeM.z);
   using shading::BackdropKind;
   for (const BackdropKind kind : {BackdropKind::kAll, BackdropKind::kSky, BackdropKind::kGround}) {
     gpu::Program& p = backdrops()[backdropIndex(kind, beyond)];
@@ -271,7 +280,6 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
 
 void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
                                 const LiveOptions& options) {
-  p.set("uEyeM", static_cast<float>(view.eyeM.z));
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
   p.set("uEnuFromCamera", view.enuFromCamera);
   p.set("uRayScale", view.rayScale);
@@ -279,7 +287,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   p.set("uPixelRad", view.pixelRad);
   p.set("uScale", options.scale);
   tables.bind(p);
-  tables.bindStars(p, *state, view.pixelRad);
+  tables.bindStars(p, *state, view.pixelRad, view.eyeM.z);
   clouds->bind(p);
   std::size_t shadows = 0;
   float mean = 1.0f;
@@ -362,6 +370,7 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
   Impl& m = *impl_;
   const gpu::StateGuard guard;
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);
+  m.lookFrom(parts, options.view);
   if (m.others.splats) m.splats->lookFrom(*m.state, parts.eyeM);
   if (m.others.volumes)
     m.volumes->march(options.view, *m.state, m.sheets, *m.clouds, m.tables, parts, target.area.width,
@@ -394,6 +403,7 @@ const AirVolume& LiveSky::airVolume(const shading::View& view, const AirVolumeOp
   m.airKnows = true;
   const shading::ViewParts parts = shading::partsOf(view, options.height);
   m.volumes->needLight(*m.state, *m.clouds, parts);
+  m.lookFrom(parts, options.view);
   gpu::Program& p = m.airPass->program(options);
   setUniforms(p, m.skyUniforms);
   m.volumes->setView(p, *m.state, m.sheets, parts);

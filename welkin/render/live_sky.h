@@ -12,10 +12,12 @@
 // and no memory is allocated, and while time runs on no update takes much longer than others; but a view with
 // many more metaballs in it than any before makes room for them, and one with pixels of twice the angle or
 // more may sort the stars anew (sky/star_cells.h), some milliseconds, and where time jumps the cover of
-// volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some memory.
+// volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some memory. Where
+// time or a view jumps, up to four tables of the air are made, some hundredths of a second each
+// (render/sky_table_keys.h); for the eye of view 0, which may climb or sink as aircraft do, they are ready
+// before it comes to their heights, for other views in time alone.
 //
-// The air, and the light that clouds get from sky and air, are those of the height of scene.camera.eyeM: a
-// view from far above or below it has its own clouds and horizon, and the sky's brightness of that height.
+// The air is that about each view's eye, wherever the scene's own is.
 //
 // Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
 // sheets and volumes all of them together have their place by the middle of their heights.

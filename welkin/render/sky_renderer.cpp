@@ -143,7 +143,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
   shading::addPhaseDefines(state, defines);
-  if (SkyTextures::isAnythingBeyond(state, pixelRadOf(state))) defines.emplace_back("WELKIN_BEYOND", "1");
+  if (SkyTextures::isAnythingBeyond(state, pixelRadOf(state), eyeM)) defines.emplace_back("WELKIN_BEYOND", "1");
   if (cloudLight == CloudLight::kSingle) defines.emplace_back("WELKIN_SINGLE_SCATTERING", "1");
   if (cloudLight == CloudLight::kOctaves) defines.emplace_back("WELKIN_OCTAVES_OF_SCATTERING", "1");
   gpu::Program& p = sky.with(defines);
@@ -160,7 +160,7 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
 void SkyRenderer::Impl::bind(gpu::Program& p, const scene::SkyState& state) {
   clouds->bind(p);
   tables.bind(p);
-  tables.bindStars(p, state, pixelRadOf(state));
+  tables.bindStars(p, state, pixelRadOf(state), state.scene.camera.eyeM);
   p.bind("uLightVolume", lightVolume.volume());
   p.bind("uFluence", lightVolume.fluence());
   p.bind("uGroundShares", lightVolume.groundShares());

@@ -7,6 +7,7 @@
 #include "welkin/optics/ice_phase.h"
 #include "welkin/optics/mie_droplets.h"
 #include "welkin/optics/rain_phase.h"
+#include "welkin/render/programs.h"
 #include "welkin/scene/cloud_shapes.h"
 #include "welkin/scene/rain_shafts.h"
 #include "welkin/shading/splat_lights.h"
@@ -20,17 +21,8 @@ namespace {
 constexpr gpu::TextureOptions kHalf{.format = gpu::Format::kRgba16F}, kFull{.format = gpu::Format::kRgba32F},
     kStarTexels{.format = gpu::Format::kRgba32F, .filter = gpu::Filter::kNearest};
 
-constexpr int kWeights = 64;
-constexpr double kKeyS = scene::ClearSkyKey::kKeyS;
-
 double eyeAltitude(const scene::SkyState& state) {
   return state.scene.place.altitudeM + state.scene.camera.eyeM;
-}
-
-template <class Table>
-void blend(const Table& a, const Table& b, float weight, Table& out) {
-  if (out.data.size() != a.data.size()) out = a;
-  for (std::size_t i = 0; i < a.data.size(); ++i) out.data[i] = a.data[i] + weight * (b.data[i] - a.data[i]);
 }
 
 template <class Texture, class Table>
@@ -46,11 +38,11 @@ struct Beyond {
   float stars = 0.0f, milkyWay = 0.0f;  // shares
   sky::PlanetSpots planets;
 };
-Beyond beyond(const scene::SkyState& state, float pixelRad) {
+Beyond beyond(const scene::SkyState& state, float pixelRad, double eyeM) {
   if (!state.scene.output.stars) return {};
   const double sunDeg = sky::darknessElevationDeg(state.ephemeris);
   return {sky::starlightShare(sunDeg), sky::milkyWayShare(sunDeg),
-          sky::planetSpots(state.ephemeris, state.scene.camera.eyeM, pixelRad)};
+          sky::planetSpots(state.ephemeris, eyeM, pixelRad)};
 }
 
 }  // namespace
@@ -88,75 +80,45 @@ void SkyTextures::update(const scene::SkyState& state) {
   shown_.reset();
 }
 
-void SkyTextures::start(const scene::SkyState& state, KeyName name, double startedAt) {
-  // Sun and moon in the order that the instant has, even where they have changed places by the key instant.
-  const scene::SkyLights lights = scene::lightsAt(state.scene, name.atS);
-  auto ordered = lights.lights;
-  if (lights.bySun != name.bySun) std::swap(ordered[0], ordered[1]);
-  ahead_.tables.start(*state.atmosphere, eyeAltitude(state), ordered);
-  ahead_.light.start(state, name.atS);
-  ahead_.name = name;
-  ahead_.startedAt = startedAt;
-}
-
-// Completes the key instant, where it is not the one under way from its start.
-void SkyTextures::make(const scene::SkyState& state, KeyName name, Key& key) {
-  if (ahead_.name != name) start(state, name, 0.0);
-  ahead_.tables.computeTo(ahead_.tables.rows());
-  std::swap(key.tables, ahead_.tables.tables());
-  key.name = name;
-  ahead_.name.reset();
-}
-
-void SkyTextures::keep(const scene::SkyState& state, KeyName first, KeyName second) {
-  if (keys_[0].name == second || keys_[1].name == first) std::swap(keys_[0], keys_[1]);
-  if (keys_[0].name != first && ahead_.name == second) make(state, second, keys_[1]);  // before it is lost
-  if (keys_[0].name != first) make(state, first, keys_[0]);
-  if (keys_[1].name != second) make(state, second, keys_[1]);
-}
-
-void SkyTextures::prepareNext(scene::SkyState& state) {
-  pace_.moveTo(state.secondsAfter, kKeyS);
-  const KeyName next{pace_.next(), state.litBySun};
-  if (ahead_.name != next) {
-    start(state, next, pace_.share());
-    return;
+void SkyTextures::prepareLight(scene::SkyState& state) {
+  pace_.moveTo(state.secondsAfter, scene::ClearSkyKey::kKeyS);
+  if (lightAtS_ != pace_.next()) {
+    lightAtS_ = pace_.next();
+    light_.start(state, *lightAtS_);
   }
-  const int rows = ahead_.tables.rows(), all = rows + scene::ClearSkyKeyInProgress::kParts,
-            upTo = static_cast<int>(std::ceil(pace_.due(ahead_.startedAt) * all));
-  ahead_.tables.computeTo(std::min(upTo, rows));
-  ahead_.light.computeTo(upTo - rows);
-  if (upTo == all) state.clearSkyAhead = ahead_.light.key();
+  constexpr int kParts = scene::ClearSkyKeyInProgress::kParts;
+  const int upTo = static_cast<int>(std::ceil(pace_.due() * kParts));
+  light_.computeTo(upTo);
+  if (upTo == kParts) state.clearSkyAhead = light_.key();
 }
 
 void SkyTextures::updateLive(scene::SkyState& state) {
   updatePhases(state);
-  if (atmosphere_ != state.atmosphere || eyeAltitudeM_ != eyeAltitude(state)) {
-    for (Key& key : keys_) key.name.reset();
-    ahead_.name.reset();
-    shown_.reset();
+  if (atmosphere_ != state.atmosphere) {
     atmosphere_ = state.atmosphere;
-    eyeAltitudeM_ = eyeAltitude(state);
+    shown_.reset();
+    lightAtS_.reset();
+    pace_ = {};
   }
   updateLights(state);
-  const double before = std::floor(state.secondsAfter / kKeyS) * kKeyS;
-  const KeyName first{before, state.litBySun}, second{before + kKeyS, state.litBySun};
-  // Whole steps of the weight, so that pictures between them upload nothing.
-  const int weight = static_cast<int>((state.secondsAfter - before) / kKeyS * kWeights);
-  if (shown_ != std::pair{first, weight}) {
-    keep(state, first, second);
-    const sky::SkyTables &a = keys_[0].tables, &b = keys_[1].tables;
-    const float w = static_cast<float>(weight) / kWeights;
-    blend(a.skyView, b.skyView, w, blended_.skyView);
-    blend(a.aerialInscatter, b.aerialInscatter, w, blended_.aerialInscatter);
-    blend(a.aerialTransmittance, b.aerialTransmittance, w, blended_.aerialTransmittance);
-    upload(state, blended_);
-    shown_ = {first, weight};
-  }
-  prepareNext(state);
+  prepareLight(state);
 }
 
-void SkyTextures::bind(const gpu::Program& program) const {
+void SkyTextures::lookFrom(const scene::SkyState& state, const scene::EyeAir& air, double eyeM,
+                           unsigned view) {
+  shading::eyeUniforms(air, eyeM, eye_);
+  const SkyTableKeys::Place place = SkyTableKeys::placeOf(state, eyeM);
+  keys_.keep(place, view);
+  if (shown_ != place) {
+    keys_.blend(state, place, blended_);
+    upload(state, blended_);
+    shown_ = place;
+  }
+  keys_.prepare(state, place, eyeM, view);
+}
+
+void SkyTextures::bind(gpu::Program& program) const {
+  setUniforms(program, eye_);
   program.bind("uTransmittance", transmittance_);
   program.bind("uSkyView", skyView_);
   program.bind("uKeyLight", keyLight_);
@@ -168,8 +130,8 @@ void SkyTextures::bind(const gpu::Program& program) const {
   program.bind("uAerialTransmittance", through_);
 }
 
-bool SkyTextures::isAnythingBeyond(const scene::SkyState& state, float pixelRad) {
-  const Beyond there = beyond(state, pixelRad);
+bool SkyTextures::isAnythingBeyond(const scene::SkyState& state, float pixelRad, double eyeM) {
+  const Beyond there = beyond(state, pixelRad, eyeM);
   return there.stars > 0.0f || there.milkyWay > 0.0f || there.planets.count > 0;
 }
 
@@ -190,9 +152,10 @@ void SkyTextures::makeStars(const scene::SkyState& state, float pixelRad) {
   stars.cells = sorted.cells;
 }
 
-void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad) {
+void SkyTextures::bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad,
+                            double eyeM) {
   if (!program.has("uStars")) return;
-  const Beyond there = beyond(state, pixelRad);
+  const Beyond there = beyond(state, pixelRad, eyeM);
   // What lib/background.glsl finds in uPlanets.
   Image<float>& texels = planetTexels_;
   if (texels.data.empty()) texels = Image<float>(2 * sky::kPlanetCount + 1, 1, 4);

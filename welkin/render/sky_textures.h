@@ -5,12 +5,13 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "welkin/gpu/program.h"
 #include "welkin/gpu/texture.h"
 #include "welkin/render/key_pace.h"
+#include "welkin/render/sky_table_keys.h"
 #include "welkin/scene/sky_state.h"
+#include "welkin/shading/uniforms.h"
 #include "welkin/sky/atmosphere.h"
 #include "welkin/sky/star_cells.h"
 
@@ -20,57 +21,44 @@ class SkyTextures {
  public:
   // Computes the tables for a sky and its eye, and uploads them.
   void update(const scene::SkyState& state);
-  // The same for frame after frame: the tables of two key instants (scene::ClearSkyKey), blended. A pure
-  // function of the scene and the instant as well, whatever was asked for before: blended linearly, tables of
-  // an interval differ from exact ones by less than a part in a hundred at dusk.
+  // The same for frame after frame, with updateLive() when time moves on and lookFrom() before each view is
+  // drawn: the tables of two key instants (scene::ClearSkyKey) and of two key heights (SkyTableKeys),
+  // blended. A pure function of the scene, the instant and the eye's height as well, whatever was asked for
+  // before; blended linearly, tables differ from exact ones by less than a part in a hundred at dusk.
   //
   // While time runs through an interval, the tables of the key instant after it are made a few rows at a
-  // time, and with them state.clearSkyAhead, so that no frame has to wait for them. Where time jumps, or the
-  // sun hands over to the moon, two key instants are made at once. Allocates nothing once it has made three.
+  // time, and with them state.clearSkyAhead, so that no frame has to wait for them; so are those of the next
+  // key height while an eye climbs or sinks, that of view 0. Where time or the eye jumps, or the sun hands
+  // over to the moon, they are made at once. Allocates nothing after the first view, unless views are at many
+  // heights.
   void updateLive(scene::SkyState& state);
-  // Binds those that the program asks for.
-  void bind(const gpu::Program& program) const;
+  // air: about the eye.
+  void lookFrom(const scene::SkyState& state, const scene::EyeAir& air, double eyeM, unsigned view);
+  // Binds those that the program asks for, and after lookFrom() sets the uniforms of its eye.
+  void bind(gpu::Program& program) const;
   // Whether stars, planets or the Milky Way are drawn in pictures with pixels of the given size: by programs
   // with WELKIN_BEYOND, as they cost a rasteriser on the processor much by day too.
-  static bool isAnythingBeyond(const scene::SkyState& state, float pixelRad);
+  static bool isAnythingBeyond(const scene::SkyState& state, float pixelRad, double eyeM);
   // Binds them, for such programs. Their textures are made then, once for pixels of one level
   // (sky/star_cells.h) and one scene time; or before, so that no frame at dusk has to wait for them.
-  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad);
+  void bindStars(gpu::Program& program, const scene::SkyState& state, float pixelRad, double eyeM);
   void makeStars(const scene::SkyState& state, float pixelRad);
 
  private:
-  struct KeyName {
-    double atS = 0.0;
-    bool bySun = false;  // which light the azimuths count from
-    bool operator==(const KeyName&) const = default;
-  };
-  struct Key {
-    std::optional<KeyName> name;  // none: nothing in it yet
-    sky::SkyTables tables;
-  };
-  // The key instant that comes next, being made.
-  struct Ahead {
-    std::optional<KeyName> name;
-    double startedAt = 0.0;  // share of the interval that had passed
-    sky::SkyTablesInProgress tables;
-    scene::ClearSkyKeyInProgress light;
-  };
-  void keep(const scene::SkyState& state, KeyName first, KeyName second);
-  void make(const scene::SkyState& state, KeyName name, Key& key);
-  void start(const scene::SkyState& state, KeyName name, double startedAt);
-  void prepareNext(scene::SkyState& state);
   void updatePhases(const scene::SkyState& state);
   void updateLights(const scene::SkyState& state);
+  void prepareLight(scene::SkyState& state);
   void upload(const scene::SkyState& state, const sky::SkyTables& tables);
 
-  std::shared_ptr<const sky::Atmosphere> atmosphere_;  // that the keys are of
-  double eyeAltitudeM_ = 0.0;
-  std::array<Key, 2> keys_;  // before and after the instant
-  Ahead ahead_;
-  KeyPace pace_;
+  SkyTableKeys keys_;
+  std::optional<SkyTableKeys::Place> shown_;  // whose tables are uploaded
   sky::SkyTables blended_;
+  shading::Uniforms eye_;
+  std::shared_ptr<const sky::Atmosphere> atmosphere_;  // that shown_ and light_ are of
+  scene::ClearSkyKeyInProgress light_;                 // of the key instant that comes next
+  std::optional<double> lightAtS_;
+  KeyPace pace_;
   Image<float> lightTable_;
-  std::optional<std::pair<KeyName, int>> shown_;  // first key instant and weight that are uploaded
   gpu::Texture2D transmittance_, skyView_, keyLight_, secondLight_;
   gpu::Texture3D inscatter_, through_;
   std::optional<double> mieDiameterUm_;  // that mieDroplets_ is of

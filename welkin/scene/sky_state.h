@@ -3,6 +3,7 @@
 // calibrated, lights placed, atmosphere computed. A pure function of (scene, instant).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
+#include "welkin/scene/ambient_light.h"
 #include "welkin/scene/cloud_cover.h"
 #include "welkin/scene/metaballs.h"
 #include "welkin/scene/scene.h"
@@ -20,37 +22,13 @@
 
 namespace welkin::scene {
 
-// Luminance that hazy air tends to, cd/m2, by the direction in which one looks.
-struct AirLight {
-  glm::vec3 mean{0};                 // over all directions
-  std::array<glm::vec3, 3> along{};  // more of it for each unit of the direction's east, north and up
-};
-AirLight operator*(const glm::vec3& share, const AirLight& light);
-
-// Light that reaches clouds and ground from all directions at once, past the layers that are drawn as
-// volumes; what thin sheets make of it: shading/sheet_ambient.h. Linear Rec. 709.
-struct AmbientLight {
-  glm::vec3 skyLow{0};       // mean luminance of the upper hemisphere of the clear sky at the ground, cd/m2
-  glm::vec3 skyHigh{0};      // the same at 10 km
-  glm::vec3 skyOnGround{0};  // illuminance of the ground by sky and clouds, lux
-  glm::vec3 ground{0};       // mean luminance of the ground, cd/m2
-  float cover = 0.0f;        // of the sky by volumes, [0, 1]
-  float cloudsM = 0.0f;      // height in which light falls on thick clouds; 0: there are none
-  float sunOverSky = 0.0f;   // illuminance of level ground by sun and moon in that by the sky, both clear
-  // What comes from above the horizon at the ground, at 2 km and at 10 km, and from below it at 2 km and at
-  // 10 km, air and ground.
-  sky::LightMoments above, aboveLow, aboveHigh, below, belowHigh;
-  float clearAir = 1.0f;        // share of the air beneath the clouds that the sun reaches
-  float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
-  AirLight haze;                // about the eye where it does not
-  AirLight cloudGlow;           // by how much volumes make that brighter than it is under the clear sky
-};
-
 // Light of the clear sky alone at a key instant: whole multiples of kKeyS. In between it is blended, as it
 // takes milliseconds to compute: linearly, within half a hundredth at dusk.
 struct ClearSkyKey {
   static constexpr double kKeyS = 30.0;
   static constexpr double kLowM = 2000.0, kHighM = 10000.0;  // above the ground, and above the sea
+  // Above the sea, where the light high up is looked for: above high ground higher.
+  static double highAltitudeM(double groundAltitudeM) { return std::max(kHighM, groundAltitudeM + 1000.0); }
   double atS = 0.0;
   sky::LightMoments ground, low, high;  // of the sky above the horizon at the ground, at kLowM, at kHighM
   sky::LightMoments lowAir, highAir;    // of the air below it at kLowM, at kHighM

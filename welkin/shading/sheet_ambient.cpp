@@ -160,8 +160,9 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
   const Descent::AtGround ground = all.atGround();
   a.skyOnGround = ground.sky;
   a.ground = ground.light;
-  a.clearAir = a.airUnderSheets = 1.0f;
-  if (!volumes.empty()) {
+  out.onHaze = out.onGlow = glm::vec3(1.0f);
+  out.amongVolumes = !volumes.empty();
+  if (out.amongVolumes) {
     const Descent::AtGround before = volumesAlone.atGround();
     const glm::vec3 least(1e-30f);
     a.skyOnGround = state.ambient.skyOnGround * (ground.sky / glm::max(before.sky, least));
@@ -169,17 +170,25 @@ void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets
     a.ground = state.ambient.ground * share;
     a.below = share.y * state.ambient.below;
     a.belowHigh = share.y * state.ambient.belowHigh;
-    a.clearAir = state.ambient.clearAir;
-    a.cloudGlow = share * state.ambient.cloudGlow;
+    out.onGlow = share;
   }
-  for (std::size_t i = 0; i < sheets.size(); ++i)
-    if (sheets[i].heightM > state.scene.camera.eyeM) a.airUnderSheets *= out.sunThrough[i];
-  a.clearAir *= a.airUnderSheets;
   // Of what there was without them, as much as there is of light from above and from below.
   const auto around = [](const scene::AmbientLight& light) {
     return light.skyOnGround / kPiF + light.ground;
   };
-  a.haze = (around(a) / glm::max(around(state.ambient), glm::vec3(1e-30f))) * state.ambient.haze;
+  out.onHaze = around(a) / glm::max(around(state.ambient), glm::vec3(1e-30f));
+  a.air = airUnder(state, sheets, out, state.scene.camera.eyeM);
+}
+
+scene::EyeAir airUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                       const LightUnderSheets& light, double eyeM) {
+  scene::EyeAir air = scene::airAbout(state, eyeM);
+  for (std::size_t i = 0; i < sheets.size(); ++i)
+    if (sheets[i].heightM > eyeM) air.airUnderSheets *= light.sunThrough[i];
+  air.clearAir = (light.amongVolumes ? air.clearAir : 1.0f) * air.airUnderSheets;
+  air.haze = light.onHaze * air.haze;
+  air.cloudGlow = light.onGlow * air.cloudGlow;
+  return air;
 }
 
 glm::vec4 lightShareUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets, double heightM) {

@@ -47,6 +47,8 @@ struct LightUnderSheets {
   scene::AmbientLight ambient;       // at the ground; of the sky above all clouds where it says so
   std::vector<LightOnSheet> sheets;  // a layer each, in their order
   std::vector<float> sunThrough;     // mean share of the key light that each lets through
+  glm::vec3 onHaze{1}, onGlow{1};    // what they leave of the air's light; of what volumes add to it
+  bool amongVolumes = false;
 };
 
 struct SheetInSky {
@@ -73,6 +75,10 @@ LightUnderSheets lightUnder(const scene::SkyState& state, std::span<const SheetI
 // The same into `out`, which allocates nothing once it has held as many sheets.
 void lightUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
                 std::span<const VolumeInSky> volumes, LightUnderSheets& out);
+
+// The air about eyes at a height above the ground, m, where there are sheets. light: lightUnder() of them.
+scene::EyeAir airUnder(const scene::SkyState& state, std::span<const SheetInSky> sheets,
+                       const LightUnderSheets& light, double eyeM);
 
 // Light at a height under sheets: the mean luminance of the sky there as a multiple of the clear sky's (xyz),
 // and the mean share of the key light (w).

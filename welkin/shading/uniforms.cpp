@@ -66,6 +66,14 @@ void putAirLight(Refill& u, std::string_view owner, const scene::AirLight& light
           glm::vec4(light.mean[c], light.along[0][c], light.along[1][c], light.along[2][c]));
 }
 
+void putEye(Refill& u, const scene::EyeAir& air, double eyeM) {
+  u.put("", "uEyeM", static_cast<float>(eyeM));
+  u.put("", "uClearAir", air.clearAir);
+  u.put("", "uAirUnderSheets", air.airUnderSheets);
+  putAirLight(u, "uHaze", air.haze);
+  putAirLight(u, "uCloudGlow", air.cloudGlow);
+}
+
 }  // namespace
 
 Uniforms cloudUniforms(const scene::SkyState& state) {
@@ -120,7 +128,6 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   const scene::Scene& s = state.scene;
   sky::visitFields(state.atmosphere->uniforms(),
                    [&](const char* name, auto value) { u.put("uAtmosphere.", name, value); });
-  u.put("", "uEyeM", static_cast<float>(s.camera.eyeM));
   u.put("", "uEarthRadiusM", static_cast<float>(state.clouds->earthRadiusM()));
   u.put("", "uGroundAltitudeM", static_cast<float>(s.place.altitudeM));
   u.put("", "uKeyDirection", state.lights[0].direction);
@@ -135,10 +142,7 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   putMoments(u, "uAboveLight[2]", state.ambient.aboveHigh);
   putMoments(u, "uBelowLight[0]", state.ambient.below);
   putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
-  u.put("", "uClearAir", state.ambient.clearAir);
-  u.put("", "uAirUnderSheets", state.ambient.airUnderSheets);
-  putAirLight(u, "uHaze", state.ambient.haze);
-  putAirLight(u, "uCloudGlow", state.ambient.cloudGlow);
+  putEye(u, state.ambient.air, s.camera.eyeM);
   u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
 
   const optics::DropletPhase droplets =
@@ -169,6 +173,11 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   u.put("", "uEarthShadow", glm::vec4(e.lunarEclipse.at, e.lunarEclipse.moonRadius));
   u.put("", "uEarthOverSun", e.lunarEclipse.earthRadius);
   u.put("", "uMoonShare", e.lunarEclipse.share);
+}
+
+void eyeUniforms(const scene::EyeAir& air, double eyeM, Uniforms& uniforms) {
+  Refill u(uniforms);
+  putEye(u, air, eyeM);
 }
 
 void lightTable(const scene::SkyState& state, const sky::Light& light, Image<float>& table) {

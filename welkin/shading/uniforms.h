@@ -37,6 +37,9 @@ float drawnSunRadius(const sky::Ephemeris& ephemeris);
 Uniforms skyUniforms(const scene::SkyState& state);
 // The same into a list that was filled before: allocates nothing.
 void skyUniforms(const scene::SkyState& state, Uniforms& uniforms);
+// Of these those of the eye alone, for another: its height above the ground, m, and the air about it.
+// Allocates nothing where the list was filled before.
+void eyeUniforms(const scene::EyeAir& air, double eyeM, Uniforms& uniforms);
 
 // What of a light of the sky reaches clouds through the air: RGB illuminance, lux, by height (columns) and
 // the sine of the light's elevation (rows). Allocates only where the table is empty.

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <glm/ext/matrix_transform.hpp>
 #include <iostream>
 #include <new>
 #include <vector>
@@ -152,6 +153,24 @@ TEST_F(LiveSkyTest, DrawsAllocateNothing) {
   EXPECT_EQ(gAllocations - before, 0);
 }
 
+// The eye climbs through three key heights of the air (SkyTableKeys), and two views are drawn from elsewhere.
+TEST_F(LiveSkyTest, ClimbsAllocateNothing) {
+  LiveSky sky;
+  const scene::Scene s = thinScene();
+  const auto frame = [&](int i) {
+    sky.update(s, 0.5 * i);
+    for (unsigned view = 0; view < 2; ++view) {
+      shading::View from = shading::viewOf(sky.state());
+      from.view = glm::translate(from.view, {0.0, 0.0, view == 0 ? -4.0 * i : -4000.0});
+      sky.draw(from, target, {.view = view});
+    }
+  };
+  for (int i = 0; i < 3; ++i) frame(i);
+  const long before = gAllocations;
+  for (int i = 3; i < 120; ++i) frame(i);
+  EXPECT_EQ(gAllocations - before, 0);
+}
+
 // Through three key instants of the clear sky, a second at a time.
 TEST_F(LiveSkyTest, UpdatesAllocateNothing) {
   LiveSky sky;
@@ -278,7 +297,7 @@ TEST_F(LiveSkyTest, SheetsBesideMetaballsKeepTheirLight) {
   const scene::AmbientLight with = ambientOf(s);
   s.layers.pop_back();
   const scene::AmbientLight alone = ambientOf(s);
-  EXPECT_NEAR(with.clearAir, alone.clearAir, 0.15f * alone.clearAir);
+  EXPECT_NEAR(with.air.clearAir, alone.air.clearAir, 0.15f * alone.air.clearAir);
   EXPECT_NEAR(with.skyOnGround.y, alone.skyOnGround.y, 0.15f * alone.skyOnGround.y);
 }
 
@@ -412,6 +431,26 @@ TEST_F(LiveSkyTest, MarchedFramesAllocateNothing) {
   const long before = gAllocations;
   for (int i = 3; i < 3 + 2 * LiveVolumes::kFramesOfSweep; ++i) frame(i);
   EXPECT_EQ(gAllocations - before, 0);
+}
+
+// The scene's own eye is for pictures; engines have theirs.
+TEST_F(LiveSkyTest, TheAirIsThatOfTheView) {
+  for (const scene::Scene& low : {clearScene(30.0), clearScene(-3.0), marchedScene(), thinScene()}) {
+    const scene::Scene high = fromHeight(looking(sized(low, 64, 36), 120.0, 15.0), 9000.0);
+    LiveSky own, other;
+    own.update(high, 0.0);
+    other.update(fromHeight(high, 2.0), 0.0);
+    const shading::View view = shading::viewOf(own.state());
+    const auto drawnBy = [&](LiveSky& sky) {
+      for (int i = 0; i < 70; ++i) sky.draw(view, target);
+      return target.readPicture(0, 3);
+    };
+    const Image<float> expected = drawnBy(own), picture = drawnBy(other);
+    EXPECT_LT(relativeDifference(picture, expected), 1e-3);
+    // As a still has it, which takes tables of its very height.
+    const double still = luminanceOf(meanOf(SkyRenderer().draw(own.state()).luminance));
+    EXPECT_NEAR(luminanceOf(meanOf(picture)) / still, 1.0, 0.03);
+  }
 }
 
 // Nor where time comes to key instants of cover.

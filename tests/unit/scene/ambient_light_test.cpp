@@ -160,14 +160,14 @@ TEST(AmbientLight, OfHazeIsMoreWhereLightComesFrom) {
   const auto ratio = [](const AirLight& light, const glm::vec3& way) {
     return greenTowards(light, way) / greenTowards(light, -way);
   };
-  EXPECT_GT(ratio(clear.ambient.haze, level), 1.2f);
-  EXPECT_LT(ratio(clear.ambient.haze, level), 4.0f);
-  EXPECT_NEAR(ratio(under.ambient.haze, level), 1.0f, 0.15f);
-  EXPECT_GT(ratio(over.ambient.haze, {0.0f, 0.0f, -1.0f}), 1.3f);
+  EXPECT_GT(ratio(clear.ambient.air.haze, level), 1.2f);
+  EXPECT_LT(ratio(clear.ambient.air.haze, level), 4.0f);
+  EXPECT_NEAR(ratio(under.ambient.air.haze, level), 1.0f, 0.15f);
+  EXPECT_GT(ratio(over.ambient.air.haze, {0.0f, 0.0f, -1.0f}), 1.3f);
   // None of it by clouds where there are none.
-  EXPECT_EQ(clear.ambient.cloudGlow.mean, glm::vec3(0.0f));
-  EXPECT_NEAR(greenTowards(clear.ambient.cloudGlow, level), 0.0f, 1e-4f * clear.ambient.haze.mean.y);
-  EXPECT_GT(over.ambient.cloudGlow.mean.y, 0.1f * over.ambient.haze.mean.y);
+  EXPECT_EQ(clear.ambient.air.cloudGlow.mean, glm::vec3(0.0f));
+  EXPECT_NEAR(greenTowards(clear.ambient.air.cloudGlow, level), 0.0f, 1e-4f * clear.ambient.air.haze.mean.y);
+  EXPECT_GT(over.ambient.air.cloudGlow.mean.y, 0.1f * over.ambient.air.haze.mean.y);
 }
 
 // Clouds that make the air darker make no side of it brighter: what they add from one side is part of what
@@ -179,7 +179,7 @@ TEST(AmbientLight, OfCloudsInSunlitAirHasNoSideWithoutAMean) {
     for (const double oktas : {3.0, 6.0, 8.0})
       for (const char* time : {"2026-06-21T05:00:00Z", "2026-06-21T11:00:00Z"})
         for (const double eyeM : {2.0, 5000.0}) {
-          const AirLight glow = skyUnder(genus, oktas, time, 30e3, eyeM).ambient.cloudGlow;
+          const AirLight glow = skyUnder(genus, oktas, time, 30e3, eyeM).ambient.air.cloudGlow;
           for (int c = 0; c < 3; ++c) {
             const float along = glm::length(glm::vec3(glow.along[0][c], glow.along[1][c], glow.along[2][c]));
             EXPECT_LE(along, 1.2001f * glow.mean[c])

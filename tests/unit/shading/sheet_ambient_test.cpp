@@ -83,7 +83,7 @@ TEST(SheetTransmittance, HidesAtMostItsBias) {
 
 TEST_F(SheetAmbientTest, WithoutSheetsItIsTheClearSkys) {
   EXPECT_NEAR(clear.sky / luminanceOf(state.ambient.skyOnGround), 1.0, 1e-4);
-  EXPECT_EQ(lightUnder(state, {}).ambient.clearAir, 1.0f);
+  EXPECT_EQ(lightUnder(state, {}).ambient.air.clearAir, 1.0f);
 }
 
 // Broken cloud scatters sunlight down: the sky gives more than a clear one, though the sun gives less.
@@ -138,8 +138,8 @@ TEST_F(SheetAmbientTest, SheetsAboveDimTheSunForThoseBeneath) {
   EXPECT_FLOAT_EQ(light.sheets[0].sun, light.sunThrough[1]);
   EXPECT_LT(light.sheets[0].sun, 0.6f);
   EXPECT_GT(luminanceOf(light.sheets[0].sky), luminanceOf(light.sheets[1].sky));
-  EXPECT_FLOAT_EQ(light.ambient.clearAir, light.sunThrough[0] * light.sunThrough[1]);
-  EXPECT_EQ(light.ambient.airUnderSheets, light.ambient.clearAir);
+  EXPECT_FLOAT_EQ(light.ambient.air.clearAir, light.sunThrough[0] * light.sunThrough[1]);
+  EXPECT_EQ(light.ambient.air.airUnderSheets, light.ambient.air.clearAir);
 }
 
 // Snow sends light back to the clouds, which send it down again.
@@ -163,8 +163,8 @@ TEST(SheetAmbient, TakesTheVolumesLightAndDimsIt) {
   const LightUnderSheets same = under(8000.0, none);
   EXPECT_NEAR(luminanceOf(same.ambient.skyOnGround) / luminanceOf(state.ambient.skyOnGround), 1.0, 1e-5);
   EXPECT_NEAR(luminanceOf(same.ambient.ground) / luminanceOf(state.ambient.ground), 1.0, 1e-5);
-  EXPECT_NEAR(luminanceOf(same.ambient.haze.mean) / luminanceOf(state.ambient.haze.mean), 1.0, 1e-5);
-  EXPECT_EQ(same.ambient.clearAir, state.ambient.clearAir);
+  EXPECT_NEAR(luminanceOf(same.ambient.air.haze.mean) / luminanceOf(state.ambient.air.haze.mean), 1.0, 1e-5);
+  EXPECT_EQ(same.ambient.air.clearAir, state.ambient.air.clearAir);
 
   const LightUnderSheets over = under(8000.0, thick), beneath = under(300.0, thick);
   for (const LightUnderSheets* light : {&over, &beneath})
