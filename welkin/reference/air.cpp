@@ -74,8 +74,14 @@ Air::Air(const sky::AtmosphereUniforms& u)
            (1.0 - static_cast<double>(sky::shared::kHazePeakWeight));
   const glm::vec3 sum = u.rayleighScattering + u.aerosolExtinction + u.ozoneAbsorption;
   empty_ = sum.x + sum.y + sum.z <= 0.0f;
-  for (double h = 0.0; h <= kEntriesTopM + 2.0 * kEntryM; h += kEntryM)
-    extinctions_.push_back(at(h).extinction);
+  for (double h = 0.0; h <= kEntriesTopM + 2.0 * kEntryM; h += kEntryM) {
+    const glm::dvec3 here = at(h).extinction, more = at(h + kEntryM).extinction - here;
+    ExtinctionEntry& e = extinctions_.emplace_back();
+    for (int c = 0; c < 3; ++c) {
+      e.at[static_cast<std::size_t>(c)] = static_cast<float>(here[c]);
+      e.more[static_cast<std::size_t>(c)] = static_cast<float>(more[c]);
+    }
+  }
   for (double h = 0.5 * kPlaceM; h <= top_ + 2.0 * kPlaceM; h += kPlaceM) {
     const Medium m = at(h);
     places_.push_back({glm::vec3(m.extinction), glm::vec3(m.rayleigh + m.aerosol)});
@@ -130,25 +136,32 @@ glm::dvec3 Air::transmittance(const Sphere& earth, const Ray& ray, double t) con
   if (t > kShortM) return glm::exp(-opticalDepth(earth, ray, t));
   constexpr double kTop = kEntriesTopM / kEntryM;
   auto entryAt = [&](double along) { return std::max(earth.height(ray.at(along)), 0.0) * (1.0 / kEntryM); };
-  auto extinction = [&](double x) {
+  auto add = [&](double x, float weight, Four& tau) {
     const auto i = static_cast<std::size_t>(x);
-    const glm::dvec3 &a = extinctions_[i], &b = extinctions_[i + 1];
-    return a + (b - a) * (x - static_cast<double>(i));
+    const auto f = static_cast<float>(x - static_cast<double>(i));
+    const Four &a = extinctions_[i].at, &more = extinctions_[i].more;
+    for (std::size_t c = 0; c < 4; ++c) tau[c] += weight * (a[c] + f * more[c]);
   };
-  glm::dvec3 tau;
+  Four tau{};
+  const auto length = static_cast<float>(t);
   if (t < kLineM) {
     const double x = entryAt(0.5 * t);
     if (x > kTop) return glm::exp(-opticalDepth(earth, ray, t));
-    tau = t * extinction(x);
+    add(x, length, tau);
   } else {
     // Two points of Gauss.
     constexpr double kFirst = 0.21132486540518712;
     const double x0 = entryAt(0.0), x1 = entryAt(t);
     if (std::max(x0, x1) > kTop) return glm::exp(-opticalDepth(earth, ray, t));
-    tau = 0.5 * t * (extinction(x0 + kFirst * (x1 - x0)) + extinction(x1 + kFirst * (x0 - x1)));
+    add(x0 + kFirst * (x1 - x0), 0.5f * length, tau);
+    add(x1 + kFirst * (x0 - x1), 0.5f * length, tau);
   }
-  if (std::max({tau.x, tau.y, tau.z}) > 0.05) return glm::exp(-tau);
-  return 1.0 - tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0)));  // the series of exp(-tau)
+  if (std::max({tau[0], tau[1], tau[2]}) > 0.05f)
+    return {std::exp(-tau[0]), std::exp(-tau[1]), std::exp(-tau[2])};
+  Four lost;  // the series of 1 - exp(-tau)
+  for (std::size_t c = 0; c < 4; ++c)
+    lost[c] = tau[c] * (1.0f - tau[c] * (0.5f - tau[c] * (1.0f / 6.0f - tau[c] * (1.0f / 24.0f))));
+  return 1.0 - glm::dvec3(lost[0], lost[1], lost[2]);
 }
 
 glm::dvec3 Air::opticalDepthToSpace(const Sphere& earth, const Ray& ray) const {

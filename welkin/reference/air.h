@@ -6,6 +6,7 @@
 // wavelength would be.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -50,6 +51,10 @@ class Air {
   double sampleAerosol(Random& random) const;
 
  private:
+  using Four = std::array<float, 4>;  // red, green, blue and none
+  struct alignas(32) ExtinctionEntry {
+    Four at{}, more{};  // 1/m; on to the next entry
+  };
   struct PlaceEntry {
     glm::vec3 extinction, scattering;  // 1/m
   };
@@ -59,8 +64,8 @@ class Air {
   double ground_, top_;
   double fineG_ = 0.0;  // of the haze's wide lobe
   bool empty_ = false;
-  std::vector<glm::dvec3> extinctions_;  // by height above the ground
-  std::vector<PlaceEntry> places_;       // coarser, to the top
+  std::vector<ExtinctionEntry> extinctions_;  // by height above the ground
+  std::vector<PlaceEntry> places_;            // coarser, to the top
 };
 
 // Transmittance to space towards a light's disc from where clouds are, tabulated over height and the cosine

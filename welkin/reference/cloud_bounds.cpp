@@ -144,7 +144,8 @@ TexelExtremes::Channels TexelExtremes::over(glm::vec3 low, glm::vec3 high) const
       const std::int16_t* row = l.row(y, z) + at[0] * cellSize;
       for (int i = 0; i < n[0]; i += together) {
         Cells some;
-        std::memcpy(&some, row + i * cellSize, sizeof some);
+        // The last reads some once more rather than those beyond.
+        std::memcpy(&some, row + std::clamp(n[0] - together, 0, i) * cellSize, sizeof some);
         all = some > all ? some : all;
       }
     }

@@ -50,7 +50,7 @@ class TexelExtremes {
     }
     void repeatRows(int cellSize);
   };
-  static constexpr int kMostCells = 4;  // along a side of what is looked up at one level
+  static constexpr int kMostCells = 12;  // along a side of what is looked up at one level
 
   int channels_ = 1;   // in memory: 1 or kMostChannels
   float step_ = 0.0f;  // of what cells hold

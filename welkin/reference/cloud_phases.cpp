@@ -54,7 +54,7 @@ PeakChain drawPeaks(const glm::dvec3& toLight, const PhaseSampler& peak, Random&
   const double share = peak.integral();
   glm::dvec3 way = toLight;
   do {
-    way = turned(way, peak.sampleCosine(unit(random)), 2.0 * kPi * unit(random));
+    way = turnedAnywhere(way, peak.sampleVersine(1.0 - unit(random)), random);
     chain.ways[chain.count++] = way;
   } while (chain.count < PeakChain::kLongest && unit(random) < share);
   chain.weight = share / (chain.count < PeakChain::kLongest ? 1.0 - share : 1.0);

@@ -46,7 +46,7 @@ CloudSourceSample CloudSource::trace(const glm::dvec3& p, const glm::dvec3& view
                                      Random& random) const {
   CloudSourceSample sample;
   sample.sun = byPeaks(p, view, isIce, 1.0, random);
-  Ray ray{p, turned(view, (isIce ? ice_ : droplets_).sampleCosine(unit(random)), 2.0 * kPi * unit(random))};
+  Ray ray{p, turnedAnywhere(view, (isIce ? ice_ : droplets_).sampleVersine(1.0 - unit(random)), random)};
   for (int i = 0; i < kMostScatterings; ++i) {
     const auto collision = medium_.collide(ray, CloudMedium::kToGround, random);
     if (!collision) {
@@ -61,7 +61,7 @@ CloudSourceSample CloudSource::trace(const glm::dvec3& p, const glm::dvec3& view
     const Ray sunward{at, toSun_};
     sample.sun += value * medium_.transmittance(sunward, CloudMedium::kToGround, random);
     sample.sun += byPeaks(at, ray.way, inIce, 0.0, random);
-    ray = {at, turned(ray.way, phase.sampleCosine(unit(random)), 2.0 * kPi * unit(random))};
+    ray = {at, turnedAnywhere(ray.way, phase.sampleVersine(1.0 - unit(random)), random)};
   }
   return sample;
 }

@@ -14,15 +14,15 @@ constexpr int kSteps = 2048;
 constexpr int kGuides = 4096;
 
 // Angles crowd towards 0, where droplets have their peak.
-double edgeCosine(int i) {
-  const double x = 1.0 - static_cast<double>(i) / kSteps;
-  return std::cos(kPi * x * x);
+double edgeVersine(int i) {
+  const double x = static_cast<double>(i) / kSteps, sine = std::sin(0.5 * kPi * x * x);
+  return 2.0 * sine * sine;
 }
 
-// A number that falls from 1 to 0 as a cosine rises, about as evenly as the steps do: the root of the half
-// angle's sine.
-double placeOf(double cosine) {
-  return std::sqrt(std::sqrt(std::max(0.5 - 0.5 * cosine, 0.0)));
+// A number that rises from 0 to 1 with an angle, about as evenly as the steps do: the root of the half
+// angle's sine. No arc cosine: it would take longer than all else here.
+float placeOf(float versine) {
+  return std::sqrt(std::sqrt(0.5f * versine));
 }
 
 }  // namespace
@@ -35,78 +35,90 @@ PhaseSampler PhaseSampler::henyeyGreenstein(double g) {
 }
 
 PhaseSampler PhaseSampler::tabulated(const std::function<double(double)>& phase) {
-  PhaseSampler s;
-  s.shares_.push_back(0.0);
-  for (int i = 0; i <= kSteps; ++i) s.edges_.push_back(edgeCosine(i));
+  std::vector<double> densities;
   for (int i = 0; i < kSteps; ++i) {
-    const double a = s.edges_[i], b = s.edges_[i + 1];
-    const double mean = (phase(a) + 4.0 * phase(0.5 * (a + b)) + phase(b)) / 6.0;  // Simpson's rule
-    s.densities_.push_back(mean);
-    s.shares_.push_back(s.shares_.back() + 2.0 * kPi * mean * (b - a));
+    const double a = 1.0 - edgeVersine(i), b = 1.0 - edgeVersine(i + 1);
+    densities.push_back((phase(a) + 4.0 * phase(0.5 * (a + b)) + phase(b)) / 6.0);  // Simpson's rule
   }
-  s.normalise();
-  return s;
+  return of(densities);
 }
 
 PhaseSampler PhaseSampler::above(double level) const {
-  assert(!edges_.empty());
+  assert(isTabulated());
+  std::vector<double> densities;
+  for (int i = 0; i < kSteps; ++i)
+    densities.push_back(std::max(densityIn(static_cast<std::size_t>(i)) - level, 0.0));
+  return of(densities);
+}
+
+PhaseSampler PhaseSampler::of(const std::vector<double>& densities) {
   PhaseSampler s;
-  s.edges_ = edges_;
-  s.shares_.push_back(0.0);
-  for (int i = 0; i < kSteps; ++i) {
-    s.densities_.push_back(std::max(densities_[i] - level, 0.0));
-    s.shares_.push_back(s.shares_.back() + 2.0 * kPi * s.densities_.back() * (edges_[i + 1] - edges_[i]));
+  s.steps_.resize(kSteps + 1);
+  for (int i = 0; i <= kSteps; ++i)
+    s.steps_[static_cast<std::size_t>(i)].versine = static_cast<float>(edgeVersine(i));
+  double total = 0.0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    s.steps_[i].share = total;
+    total += 2.0 * kPi * densities[i] *
+             (static_cast<double>(s.steps_[i + 1].versine) - static_cast<double>(s.steps_[i].versine));
   }
-  s.normalise();
+  s.integral_ = total;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    s.steps_[i].share /= total;
+    s.steps_[i].density = static_cast<float>(densities[i] / total);
+  }
+  s.steps_[kSteps].share = 1.0;
+  std::uint16_t step = 0;
+  for (int i = 0; i < kGuides; ++i) {
+    while (step + 1 < kSteps && s.steps_[step + 1u].share < static_cast<double>(i) / kGuides) ++step;
+    s.guide_.push_back(step);
+  }
+  step = 0;
+  for (int i = 0; i <= kGuides; ++i) {
+    // A little less, for what placeOf() rounds.
+    const float place = static_cast<float>(i) * (0.999999f / kGuides);
+    while (step + 1 < kSteps && placeOf(s.steps_[step + 1u].versine) < place) ++step;
+    s.stepGuide_.push_back(step);
+  }
   return s;
 }
 
-void PhaseSampler::normalise() {
-  const double total = integral_ = shares_.back();
-  for (double& d : densities_) d /= total;
-  for (double& c : shares_) c /= total;
-  int step = 0;
-  for (int i = 0; i < kGuides; ++i) {
-    while (step + 1 < kSteps && shares_[step + 1] <= static_cast<double>(i) / kGuides) ++step;
-    guide_.push_back(static_cast<std::uint16_t>(step));
-  }
-  step = kSteps - 1;
-  for (int i = 0; i < kGuides; ++i) {
-    const double place = static_cast<double>(i + 1) / kGuides, sine = place * place;
-    while (step > 0 && edges_[step] > 1.0 - 2.0 * sine * sine) --step;
-    stepGuide_.push_back(static_cast<std::uint16_t>(step));
-  }
+std::size_t PhaseSampler::stepAt(double versine) const {
+  const auto v = static_cast<float>(std::clamp(versine, 0.0, 2.0));
+  std::size_t i = stepGuide_[static_cast<std::size_t>(placeOf(v) * static_cast<float>(kGuides))];
+  while (i + 1 < kSteps && steps_[i + 1].versine <= v) ++i;
+  return i;
 }
 
 double PhaseSampler::density(double cosine) const {
-  if (edges_.empty()) {
-    const double d = 1.0 + g_ * g_ - 2.0 * g_ * cosine;
-    return (1.0 - g_ * g_) / (4.0 * kPi * d * std::sqrt(d));
-  }
-  // No arc cosine: it would take longer than all else here.
-  int i = stepGuide_[static_cast<std::size_t>(std::min(placeOf(cosine) * kGuides, kGuides - 1.0))];
-  while (i + 1 < kSteps && edges_[i + 1] <= cosine) ++i;
-  return densities_[static_cast<std::size_t>(i)];
+  if (isTabulated()) return densityIn(stepAt(1.0 - cosine));
+  const double d = 1.0 + g_ * g_ - 2.0 * g_ * cosine;
+  return (1.0 - g_ * g_) / (4.0 * kPi * d * std::sqrt(d));
 }
 
-double PhaseSampler::sampleCosine(double u) const {
-  if (edges_.empty()) {
+double PhaseSampler::sampleVersine(double u) const {
+  if (!isTabulated()) {
     // Henyey and Greenstein 1941; the inverse degenerates as g goes to 0.
-    if (std::abs(g_) < 1e-4) return 2.0 * u - 1.0 + 1.5 * g_ * (1.0 - (2.0 * u - 1.0) * (2.0 * u - 1.0));
-    const double s = (1.0 - g_ * g_) / (1.0 + g_ * (2.0 * u - 1.0));
-    return std::clamp((1.0 + g_ * g_ - s * s) / (2.0 * g_), -1.0, 1.0);
+    const double x = 1.0 - 2.0 * u;
+    if (std::abs(g_) < 1e-4) return 1.0 - x - 1.5 * g_ * (1.0 - x * x);
+    const double s = (1.0 - g_ * g_) / (1.0 + g_ * x);
+    return 1.0 - std::clamp((1.0 + g_ * g_ - s * s) / (2.0 * g_), -1.0, 1.0);
   }
-  int i = guide_[static_cast<std::size_t>(u * kGuides)];
-  while (i + 1 < kSteps && shares_[i + 1] <= u) ++i;
-  const double width = shares_[i + 1] - shares_[i];
-  const double f = width > 0.0 ? (u - shares_[i]) / width : 0.5;
-  return edges_[i] + std::clamp(f, 0.0, 1.0) * (edges_[i + 1] - edges_[i]);
+  std::size_t i = guide_[std::min(static_cast<std::size_t>(u * kGuides), kGuides - std::size_t{1})];
+  while (i + 1 < kSteps && steps_[i + 1].share < u) ++i;
+  const Step &a = steps_[i], &b = steps_[i + 1];
+  const double width = b.share - a.share, f = width > 0.0 ? (u - a.share) / width : 0.5;
+  const auto low = static_cast<double>(a.versine), high = static_cast<double>(b.versine);
+  return low + std::clamp(f, 0.0, 1.0) * (high - low);
 }
 
 double PhaseSampler::meanCosine() const {
-  if (edges_.empty()) return g_;
+  if (!isTabulated()) return g_;
   double mean = 0.0;
-  for (int i = 0; i < kSteps; ++i) mean += (shares_[i + 1] - shares_[i]) * 0.5 * (edges_[i] + edges_[i + 1]);
+  for (std::size_t i = 0; i < kSteps; ++i)
+    mean +=
+        (steps_[i + 1].share - steps_[i].share) *
+        (1.0 - 0.5 * (static_cast<double>(steps_[i].versine) + static_cast<double>(steps_[i + 1].versine)));
   return mean;
 }
 

@@ -63,7 +63,9 @@ glm::dvec3 SkyEvent::value(const glm::dvec3& w) const {
     case Kind::kPhase:
       break;
   }
-  return glm::dvec3(phase_->density(c) - (peak_ > 0.0 ? peak_ * sky_->peak.density(c) : 0.0));
+  if (peak_ <= 0.0) return glm::dvec3(phase_->density(c));
+  const std::size_t step = phase_->stepAt(1.0 - c);  // of the peak as well, which is cut off them
+  return glm::dvec3(phase_->densityIn(step) - peak_ * sky_->peak.densityIn(step));
 }
 
 double SkyEvent::chain() const {
@@ -76,18 +78,19 @@ void SkyEvent::leave(SkyPath& path, Random& random) const {
     path.ray = {p_, lambertDirection(from_, random)};
     return;
   }
-  double c = 0.0;
+  double versine = 0.0;
   if (kind_ == Kind::kAir) {
     const Air& air = sky_->air;
     const double share = sum(path.throughput * aerosol_) / sum(path.throughput);
-    c = unit(random) < share ? air.sampleAerosol(random) : air.sampleRayleigh(random);
+    const double c = unit(random) < share ? air.sampleAerosol(random) : air.sampleRayleigh(random);
     const double pr = air.phaseRayleigh(c), pa = air.phaseAerosol(c);
     path.throughput *= (rayleigh_ * pr + aerosol_ * pa) / ((1.0 - share) * pr + share * pa);
+    versine = 1.0 - c;
   } else {
-    c = phase_->sampleCosine(unit(random));
-    if (colours_) path.throughput *= colours_->density(c) / phase_->density(c);
+    versine = phase_->sampleVersine(1.0 - unit(random));
+    if (colours_) path.throughput *= colours_->density(1.0 - versine) / phase_->density(1.0 - versine);
   }
-  path.ray = {p_, turned(from_, c, 2.0 * kPi * unit(random))};
+  path.ray = {p_, turnedAnywhere(from_, versine, random)};
 }
 
 }  // namespace welkin::reference

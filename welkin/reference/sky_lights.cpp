@@ -54,10 +54,11 @@ LightSample SkyLights::sample(const glm::dvec3& p, Random& random) const {
     const double u = unit(random);
     const double x2 = disc.isSun ? 1.0 - std::pow(1.0 - u, 1.0 / (1.0 + 0.5 * kLimb)) : u;
     // The sine and cosine of so small an angle are those of its series.
-    const double angle2 = disc.radius * disc.radius * x2, phi = 2.0 * kPi * unit(random);
+    const double angle2 = disc.radius * disc.radius * x2;
+    const OnCircle about = onCircle(unit(random));
     const double sine = std::sqrt(angle2) * (1.0 - angle2 / 6.0),
                  cosine = 1.0 - angle2 * (0.5 - angle2 / 24.0);
-    return cosine * disc.direction + sine * (std::cos(phi) * disc.east + std::sin(phi) * disc.north);
+    return cosine * disc.direction + sine * (about.cosine * disc.east + about.sine * disc.north);
   };
   const Disc& first = discs_.front();
   const glm::dvec3 direction = aimed(first);
