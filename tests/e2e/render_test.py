@@ -49,7 +49,7 @@ class Stills(ProgramTest):
         self.assertGreater(layer["top_m"], layer["base_m"])
         for cover in (layer, r["sky_cover"]):
             self.assertTrue(3 <= cover["requested_oktas"] <= 4, cover)  # SCT
-            self.assertTrue(0 < cover["delivered_oktas"] <= 8, cover)
+            self.assertAlmostEqual(cover["delivered_oktas"], cover["requested_oktas"], delta=0.5)
         self.assertTrue(r["passes"])
         for p in r["passes"]:
             self.assertGreaterEqual(p["ms"], 0)

@@ -122,6 +122,28 @@ TEST(SkyTracer, WhiteFurnace) {
   }
 }
 
+// Paths and light that are worth little go on with a chance: over a dark ground both do, and the mean stays.
+TEST(SkyTracer, ChancesLoseNoLight) {
+  constexpr double kAlbedo = 0.05;
+  scene::Scene s = testing::cloudyScene(50.0, {Genus::kCirrus}, 4.0);
+  s.ground.albedo = {kAlbedo, kAlbedo, kAlbedo};
+  scene::SkyState state = levelSky(s, 1e-9);
+  withEvenPlacement(state);
+  const glm::dvec3 down = directionAt(-60.0, 40.0);
+  const double lit = kAlbedo / kPi * kSunLux * static_cast<double>(state.lights[0].direction.z);
+  const Estimate bySun = meanTowards(SkyTracer(state, {}), down, 200000);
+  EXPECT_NEAR(bySun.value, lit, 4.0 * bySun.error);
+  EXPECT_LT(bySun.error, 0.005 * lit);
+  state.lights[0].illuminance = glm::vec3(0.0f);
+  const scene::SkyState uniform = withAir(state, [](sky::AtmosphereUniforms& u) {
+    u.airglow = glm::vec3(1.0f);
+    u.airglowAltitudeM = 1e13f;
+  });
+  const Estimate bySky = meanTowards(SkyTracer(uniform, {}), down, 400000);
+  EXPECT_NEAR(bySky.value, kAlbedo, 4.0 * bySky.error);
+  EXPECT_LT(bySky.error, 0.005 * kAlbedo);
+}
+
 // The illuminance of a plane that faces `up` by all that is seen from it, paths cosine-distributed.
 Estimate illuminanceFrom(const SkyTracer& tracer, double up, int paths) {
   Random random(17);

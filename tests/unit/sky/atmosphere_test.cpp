@@ -131,6 +131,29 @@ TEST(Transmittance, AgreesWithAstmG173) {
   EXPECT_NEAR(t.z, 0.6226, 0.035);
 }
 
+// What hazy air does to white light that is scattered many times: dust takes blue away, ash a little, smoke
+// reddens what goes straight.
+TEST(AtmosphereUniforms, DustIsOchreAndSmokeReddens) {
+  const auto of = [](Aerosol aerosol) {
+    AtmosphereParams p;
+    p.aerosol = aerosol;
+    return atmosphereUniforms(p, 800.0, 0.0, glm::vec3(0.2f));
+  };
+  const auto albedo = [](const AtmosphereUniforms& u) { return u.aerosolScattering / u.aerosolExtinction; };
+  const AtmosphereUniforms haze = of(Aerosol::kHaze), dust = of(Aerosol::kDust), smoke = of(Aerosol::kSmoke),
+                           ash = of(Aerosol::kAsh);
+  EXPECT_EQ(of(Aerosol::kAuto).aerosolScattering, haze.aerosolScattering);
+  EXPECT_NEAR(albedo(dust).x, 0.96f, 1e-4f);
+  EXPECT_NEAR(albedo(dust).z, 0.92f, 1e-4f);
+  EXPECT_GT(albedo(dust).x - albedo(dust).z, albedo(ash).x - albedo(ash).z);
+  EXPECT_GT(smoke.aerosolExtinction.z, 1.6f * smoke.aerosolExtinction.x);
+  EXPECT_LT(dust.aerosolExtinction.z, 1.1f * dust.aerosolExtinction.x);
+  // Visibility is what it is, of whatever; what the wind has raised is deeper.
+  for (const AtmosphereUniforms& u : {dust, smoke, ash})
+    EXPECT_NEAR(u.aerosolExtinction.y, haze.aerosolExtinction.y, 0.02f * haze.aerosolExtinction.y);
+  EXPECT_GT(dust.aerosolScaleHeightM, 2.0f * haze.aerosolScaleHeightM);
+}
+
 // Air mass of pure air by F. Kasten and A. T. Young 1989 at zenith distances 60, 80, 85 (the table's geometry
 // is straight rays).
 TEST(Transmittance, AirMassFollowsKastenAndYoung) {

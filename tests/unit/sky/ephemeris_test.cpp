@@ -95,13 +95,23 @@ TEST(Ephemeris, Illuminance) {
   // Perihelion and aphelion: 1 / d^2 gives +3.4 and -3.3 %.
   EXPECT_NEAR(ephemeris(parseUtcTime("2026-01-03T17:00:00Z"), {}).sunIlluminanceLux, 133100 * 1.0344, 100);
   EXPECT_NEAR(ephemeris(parseUtcTime("2026-07-06T17:00:00Z"), {}).sunIlluminanceLux, 133100 * 0.9672, 100);
-  // A full moon near the mean distance; a half moon gives a tenth or less, not a half.
+  // A full moon near the mean distance. Of its light a half moon gives an eleventh, not a half: K. Krisciunas
+  // and B. E. Schaefer 1991, eq. 9, has 2.60 magnitudes less, a crescent and a gibbous moon 4.84 and 1.19.
   const Ephemeris full = ephemeris(parseUtcTime("2026-09-26T16:49:00Z"), {});
   EXPECT_GT(full.moonIlluminatedFraction, 0.998);
   EXPECT_NEAR(full.moonIlluminanceLux, 0.27, 0.04);
   const Ephemeris half = ephemeris(parseUtcTime("2026-09-18T20:44:00Z"), {});
   EXPECT_NEAR(half.moonIlluminatedFraction, 0.5, 0.02);
-  EXPECT_LT(half.moonIlluminanceLux, 0.11 * full.moonIlluminanceLux);
+  const auto ofFull = [&](const char* time, double phaseDeg, double magnitudes) {
+    const Ephemeris e = ephemeris(parseUtcTime(time), {});
+    EXPECT_NEAR(degrees(e.moonPhaseAngleRad), phaseDeg, 3.0) << time;
+    const double nearer = full.moon.distanceM / e.moon.distanceM, share = std::pow(10.0, -0.4 * magnitudes);
+    EXPECT_NEAR(e.moonIlluminanceLux / full.moonIlluminanceLux / (nearer * nearer), share, 0.15 * share)
+        << time;
+  };
+  ofFull("2026-09-18T20:44:00Z", 90.0, 2.60);
+  ofFull("2026-09-14T22:00:00Z", 135.0, 4.84);
+  ofFull("2026-09-22T20:00:00Z", 45.0, 1.19);
 }
 
 }  // namespace
