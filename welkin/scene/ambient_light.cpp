@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "welkin/core/colour.h"
 #include "welkin/core/units.h"
@@ -126,10 +127,15 @@ sky::LightMoments hemisphere(const glm::vec3& luminance, float side) {
 
 // What hazy air makes of the light about it. It scatters forward; what goes on nearly as it came is taken for
 // light that was not scattered (shaders/lib/air_shadows.glsl), and of the rest this is the mean cosine.
-constexpr float kHazeScatters = 0.93f;  // of what it takes from a ray
+constexpr float kHazeScatters = 0.93f;  // of what it takes from a ray, with the air in it
+constexpr float kHazeAlbedo = 0.9f;     // of itself; dust and smoke have others
 constexpr float kHazeAsymmetry = 0.4f;
-AirLight airLight(const sky::LightMoments& about) {
-  const float mean = kHazeScatters / static_cast<float>(4.0 * kPi), along = 3.0f * kHazeAsymmetry * mean;
+AirLight airLight(const sky::Atmosphere& air, const sky::LightMoments& about) {
+  const sky::AtmosphereUniforms& u = air.uniforms();
+  const glm::vec3 albedo = u.aerosolScattering / glm::max(u.aerosolExtinction, glm::vec3(1e-12f));
+  const glm::vec3 scatters = glm::mix(glm::vec3(kHazeScatters), albedo * (kHazeScatters / kHazeAlbedo),
+                                      glm::vec3(glm::greaterThan(u.aerosolExtinction, glm::vec3(1e-12f))));
+  const glm::vec3 mean = scatters / static_cast<float>(4.0 * kPi), along = 3.0f * kHazeAsymmetry * mean;
   return {mean * about.total, {along * about.along[0], along * about.along[1], along * about.along[2]}};
 }
 
@@ -200,8 +206,8 @@ EyeAir airAtHeight(const sky::Atmosphere& atmosphere, const AirSources& from, fl
       clear + hemisphere(sentBack(atmosphere, from, atmosphere.groundAltitudeM() + heightM), 1.0f) +
       hemisphere(from.upward, -1.0f);
   const sky::LightMoments under = throughGaps(clear, from.gapsOverhead, from.gapsLevel) + from.underClouds;
-  air.haze = airLight((1.0f - above) * under + above * over);
-  air.cloudGlow = excess(air.haze, airLight(clear + hemisphere(from.bare, -1.0f)));
+  air.haze = airLight(atmosphere, (1.0f - above) * under + above * over);
+  air.cloudGlow = excess(air.haze, airLight(atmosphere, clear + hemisphere(from.bare, -1.0f)));
   return air;
 }
 

@@ -4,6 +4,9 @@
 namespace welkin::sky {
 
 void describe(AtmosphereParams& p, ParamVisitor& v) {
+  v.choice({"aerosol", "",
+            "what makes the air hazy: haze, dust (sand), smoke or ash, or auto: as the weather report says"},
+           p.aerosol);
   v.value({"aerosol_scale_height_m", "m", "e-folding height of the haze in good visibility", 50, 10000},
           p.aerosolScaleHeightM);
   v.value({"aerosol_albedo", "", "single-scattering albedo of the haze", 0, 1}, p.aerosolAlbedo);

@@ -37,15 +37,41 @@ constexpr double kAirglowAltitudeM = 90e3;
 
 // Haze is coloured where its particles are small and grey where they are fog: exponent 1.8 (dry continental
 // haze) at 20 km of visibility and beyond, 0 at 1 km.
-double angstromExponent(double visibilityM) {
+double hazeExponent(double visibilityM) {
   return 1.8 * std::clamp(std::log(std::max(visibilityM, 1.0) / 1e3) / std::log(20.0), 0.0, 1.0);
 }
 
 // The thicker the haze, the shallower: a 100 m fog is not 2 km deep. Under 20 km the height goes with a power
 // of the visibility that keeps the optical depth of the column to plausible values: 0.4 at 20 km, 0.7 at 5
-// km, 1.5 at 1 km, 4 at 100 m.
-double hazeScaleHeightM(double fullM, double visibilityM) {
-  return fullM * std::clamp(std::pow(visibilityM / 20e3, 0.55), 0.05, 1.0);
+// km, 1.5 at 1 km, 4 at 100 m. What the wind has raised is deeper: 0.9 at 5 km, 3 at 800 m.
+double scaleHeightM(double fullM, double visibilityM, bool raised) {
+  return raised ? fullM * std::clamp(std::pow(visibilityM / 20e3, 0.4), 0.3, 1.0)
+                : fullM * std::clamp(std::pow(visibilityM / 20e3, 0.55), 0.05, 1.0);
+}
+
+// What small particles do to light: single-scattering albedo by primary, exponent of Angstrom's law, mean
+// cosine.
+struct AerosolOptics {
+  glm::dvec3 albedo;
+  double exponent, g;
+  bool raised;  // by the wind, or thrown up
+};
+// Dust as in Saudi Arabia and on Cape Verde, smoke as over burning savanna in Brazil: O. Dubovik et al. 2002,
+// "Variability of Absorption and Optical Properties of Key Aerosol Types Observed in Worldwide Locations",
+// table 1. Ash is taken to be as coarse as dust, darker and greyer.
+AerosolOptics opticsOf(const AtmosphereParams& params, double visibilityM) {
+  switch (params.aerosol) {
+    case Aerosol::kDust:
+      return {{0.96, 0.945, 0.92}, 0.15, 0.70, true};
+    case Aerosol::kSmoke:
+      return {{0.875, 0.89, 0.91}, 1.7, 0.60, false};
+    case Aerosol::kAsh:
+      return {{0.915, 0.905, 0.89}, 0.1, 0.70, true};
+    case Aerosol::kAuto:
+    case Aerosol::kHaze:
+      break;
+  }
+  return {glm::dvec3(params.aerosolAlbedo), hazeExponent(visibilityM), params.aerosolG, false};
 }
 
 }  // namespace
@@ -65,14 +91,15 @@ AtmosphereUniforms atmosphereUniforms(const AtmosphereParams& params, double vis
   const double air =
       kRayleighOpticalDepth.y / kRayleighScaleHeightM * std::exp(-groundAltitudeM / kRayleighScaleHeightM);
   const double aerosol = std::max(total - air, 0.0);
-  const double exponent = angstromExponent(visibilityM);
+  const AerosolOptics optics = opticsOf(params, visibilityM);
   for (int c = 0; c < 3; ++c) {
     u.aerosolExtinction[c] =
-        static_cast<float>(aerosol * std::pow(kAngstromWavelengthNm[c] / 550.0, -exponent));
+        static_cast<float>(aerosol * std::pow(kAngstromWavelengthNm[c] / 550.0, -optics.exponent));
   }
-  u.aerosolScattering = u.aerosolExtinction * static_cast<float>(params.aerosolAlbedo);
-  u.aerosolScaleHeightM = static_cast<float>(hazeScaleHeightM(params.aerosolScaleHeightM, visibilityM));
-  u.aerosolG = static_cast<float>(params.aerosolG);
+  u.aerosolScattering = u.aerosolExtinction * glm::vec3(optics.albedo);
+  u.aerosolScaleHeightM =
+      static_cast<float>(scaleHeightM(params.aerosolScaleHeightM, visibilityM, optics.raised));
+  u.aerosolG = static_cast<float>(optics.g);
 
   u.ozoneAbsorption = kOzoneOpticalDepth300 * static_cast<float>(params.ozoneDu / 300.0 / kOzoneHalfWidthM);
   u.ozoneAltitudeM = static_cast<float>(kOzoneAltitudeM);

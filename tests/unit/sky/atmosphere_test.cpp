@@ -151,7 +151,7 @@ TEST(AtmosphereUniforms, DustIsOchreAndSmokeReddens) {
   // Visibility is what it is, of whatever; what the wind has raised is deeper.
   for (const AtmosphereUniforms& u : {dust, smoke, ash})
     EXPECT_NEAR(u.aerosolExtinction.y, haze.aerosolExtinction.y, 0.02f * haze.aerosolExtinction.y);
-  EXPECT_GT(dust.aerosolScaleHeightM, 2.0f * haze.aerosolScaleHeightM);
+  EXPECT_GT(dust.aerosolScaleHeightM, 1.5f * haze.aerosolScaleHeightM);
 }
 
 // Air mass of pure air by F. Kasten and A. T. Young 1989 at zenith distances 60, 80, 85 (the table's geometry
