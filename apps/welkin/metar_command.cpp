@@ -12,6 +12,7 @@
 #include "welkin/core/error.h"
 #include "welkin/core/units.h"
 #include "welkin/weather/metar.h"
+#include "welkin/weather/present_weather.h"
 
 namespace welkin::app {
 namespace {
@@ -105,6 +106,8 @@ Json decoded(const Metar& m) {
                           : m.visibilityBound == MetarBound::kLessThan ? Json("<")
                                                                        : Json(nullptr);
   j["sky_obscured"] = m.skyObscured;
+  j["aerosol"] = kEnumNames<weather::Aerosol>[static_cast<std::size_t>(weather::aerosolOf(m))];
+  j["snow_on_ground"] = weather::snowLiesOnGround(m);
   j["nil"] = m.nil;
   j["special"] = m.special;
   j["corrected"] = m.corrected;
@@ -202,6 +205,10 @@ std::string metarToText(const MetarResult& r) {
       for (const auto& w : m.weather) s += " " + w;
       s += "\n";
     }
+    if (const auto aerosol = weather::aerosolOf(m); aerosol != weather::Aerosol::kHaze)
+      s += fmt::format("  air           {}\n",
+                       kEnumNames<weather::Aerosol>[static_cast<std::size_t>(aerosol)]);
+    if (weather::snowLiesOnGround(m)) s += "  ground        snow\n";
     s += "  sky           " + skyText(m) + "\n";
     if (m.temperatureC || m.dewPointC)
       s += "  temperature   " + degreesText(m.temperatureC) +

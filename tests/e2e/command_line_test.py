@@ -112,6 +112,11 @@ class Metar(ProgramTest):
         j = json.loads(self.succeed("metar", "--json", report))
         self.assertEqual((j["special"], j["corrected"], j["delayed"], j["visibility_bound"]), (True, True, False, "<"))
         self.assertEqual((j["wind"]["varies_from_deg"], j["wind"]["varies_to_deg"]), (250, 310))
+        self.assertEqual((j["aerosol"], j["snow_on_ground"]), ("haze", False))
+        dusty = "OEJN 211200Z 33018KT 2000 SS NSC M01/M05 Q1006 R16/450050"
+        j = json.loads(self.succeed("metar", "--json", dusty))
+        self.assertEqual((j["aerosol"], j["snow_on_ground"]), ("dust", True))
+        self.assertIn("  air           dust\n  ground        snow\n", self.succeed("metar", dusty))
         text = self.succeed("metar", report)
         self.assertIn("special, automatic, corrected\n", text)
         self.assertIn(", between 250 and 310 degrees\n", text)

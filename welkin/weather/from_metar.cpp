@@ -149,6 +149,8 @@ void Builder::setSurface() {
   weather_.precipitation = present_.kind;
   weather_.precipitationMmPerH = present_.rateMmPerH;
   weather_.thunder = present_.thunder;
+  weather_.aerosol = aerosolOf(metar_);
+  weather_.snowOnGround = snowLiesOnGround(metar_);
 }
 
 // Bases that a report does not give: the condensation level for convective cloud where temperature and dew

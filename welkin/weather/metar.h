@@ -102,6 +102,7 @@ struct Metar {
   std::optional<double> temperatureC;       // from the T group of the remarks where there is one
   std::optional<double> dewPointC;
   std::optional<double> pressureHpa;  // reduced to mean sea level (QNH)
+  bool snowOnRunway = false;          // SNOCLO, or a runway's state has dry, wet or compacted snow
 };
 
 struct MetarError {

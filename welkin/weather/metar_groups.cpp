@@ -314,6 +314,15 @@ bool isOldRunwayState(std::string_view text) {
   return skipDigitsOrSolidi(c, 6);
 }
 
+bool isRunwayWithSnow(std::string_view text) {
+  if (text.ends_with("SNOCLO")) return text == "SNOCLO" || isRunwayGroup(text);
+  // Code table 0919: 4 dry snow, 5 wet snow, 8 compacted or rolled snow.
+  const auto isSnow = [](char deposit) { return deposit == '4' || deposit == '5' || deposit == '8'; };
+  if (isOldRunwayState(text)) return isSnow(text[2]);
+  Cursor c(text);
+  return isRunwayGroup(text) && eatRunway(c) && !isVisualRange(c) && isSnow(c.peek());
+}
+
 bool isPresentWeather(std::string_view text) {
   if (text == "//") return true;
   if (text.size() < 2 || text.size() > 11) return false;

@@ -79,6 +79,8 @@ bool isRunwayGroup(
     std::string_view text);  // runway visual range or state of a runway: R06/1200FT, R26/59//50, R/SNOCLO
 bool isOldRunwayState(
     std::string_view text);  // 16090065, 1519//65, 02CLRD60: the eight figures in use before 2004
+// Whether one of the two groups above, or SNOCLO, says that snow lies on a runway.
+bool isRunwayWithSnow(std::string_view text);
 bool isPresentWeather(std::string_view text);      // -SHRA, VCTS, +FC, //
 bool isRecentWeather(std::string_view text);       // RERA, RE//
 bool isColourState(std::string_view text);         // BLU, BLACKWHT, YLO1

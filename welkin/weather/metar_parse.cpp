@@ -264,6 +264,7 @@ bool Reader::readSupplement(const Group& g) {
     ++pressuresSeen_;
     return true;
   }
+  metar().snowOnRunway = metar().snowOnRunway || isRunwayWithSnow(g.text);
   return g.text == "NOSIG" || g.text == "NSW" || g.text == "$" || g.text == "SNOCLO" ||
          isRunwayGroup(g.text) || isRecentWeather(g.text) || isColourState(g.text) || isSeaState(g.text) ||
          isOldRunwayState(g.text) || isNationalSupplement(g.text);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string_view>
 
 namespace welkin::weather {
@@ -95,6 +96,41 @@ PresentWeather readPresentWeather(std::span<const std::string> groups, double te
                                                        : PrecipitationCharacter::kSteady;
   }
   return w;
+}
+
+Aerosol aerosolOf(const Metar& metar) {
+  constexpr double kDriftVisibilityM = 5000.0;
+  Aerosol heaviest = Aerosol::kHaze;
+  for (const std::string& group : metar.weather) {
+    std::string_view body = group;
+    if (body.starts_with("VC")) continue;
+    if (body.starts_with('-') || body.starts_with('+')) body.remove_prefix(1);
+    const auto hasAny = [&](std::initializer_list<std::string_view> codes) {
+      return std::any_of(codes.begin(), codes.end(), [&](auto code) { return hasCode(body, code); });
+    };
+    const bool low =
+        hasCode(body, "DR") && metar.visibilityM.value_or(kDriftVisibilityM) >= kDriftVisibilityM;
+    if (hasCode(body, "VA")) return Aerosol::kAsh;
+    if (hasAny({"DU", "SA", "SS", "DS", "PO"}) && !low)
+      heaviest = Aerosol::kDust;
+    else if (hasCode(body, "FU") && heaviest == Aerosol::kHaze)
+      heaviest = Aerosol::kSmoke;
+  }
+  return heaviest;
+}
+
+bool snowLiesOnGround(const Metar& metar) {
+  constexpr double kMeltingC = 0.5;
+  if (metar.snowOnRunway) return true;
+  if (metar.temperatureC.value_or(0.0) >= kMeltingC) return false;
+  return std::any_of(metar.weather.begin(), metar.weather.end(), [](std::string_view body) {
+    if (body.starts_with("VC")) {
+      body.remove_prefix(2);
+    } else if (body.starts_with('-') || body.starts_with('+')) {
+      body.remove_prefix(1);
+    }
+    return (hasCode(body, "SN") || hasCode(body, "SG")) && !hasCode(body, "FZ");
+  });
 }
 
 }  // namespace welkin::weather

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "welkin/weather/choose_genus.h"
+#include "welkin/weather/metar.h"
 #include "welkin/weather/weather.h"
 
 namespace welkin::weather {
@@ -24,5 +25,13 @@ struct PresentWeather {
 
 // `groups` as in Metar::weather; `temperatureC` decides what precipitation of unknown kind (UP) is.
 PresentWeather readPresentWeather(std::span<const std::string> groups, double temperatureC);
+
+// The heaviest of what is reported at the station: ash, dust or sand, smoke. Drifting dust and sand stay
+// below the eye and count only where visibility is less than 5 km.
+Aerosol aerosolOf(const Metar& metar);
+
+// Whether snow lies there, by the report alone: it falls, drifts or blows, unmixed with freezing rain, below
+// 0.5 C (or without a temperature), or lies on a runway.
+bool snowLiesOnGround(const Metar& metar);
 
 }  // namespace welkin::weather

@@ -78,6 +78,14 @@ inline constexpr std::size_t kMaxRainingLayers = 2;
 
 enum class PrecipitationKind { kNone, kDrizzle, kRain, kSnow, kIcePellets, kHail };
 
+// What floats in the air besides droplets, by the kind that gives it its colour.
+enum class Aerosol {
+  kHaze,   // water-soluble particles and mist: all that is none of the others
+  kDust,   // mineral dust and sand
+  kSmoke,  // soot and organic matter of fires
+  kAsh,    // of volcanoes
+};
+
 // Everything about the weather that the sky depends on.
 struct Weather {
   std::vector<Layer> layers;    // from the lowest base to the highest
@@ -91,6 +99,8 @@ struct Weather {
   PrecipitationKind precipitation = PrecipitationKind::kNone;
   double precipitationMmPerH = 0.0;
   bool thunder = false;
+  Aerosol aerosol = Aerosol::kHaze;  // at the station; of its amount the visibility says all
+  bool snowOnGround = false;
   std::vector<std::string> notes;  // what was assumed or decided, one sentence each, for the report
 };
 
@@ -107,4 +117,7 @@ inline constexpr auto kEnumNames<weather::Technique> =
 template <>
 inline constexpr auto kEnumNames<weather::PrecipitationKind> =
     std::array<std::string_view, 6>{"none", "drizzle", "rain", "snow", "ice_pellets", "hail"};
+template <>
+inline constexpr auto kEnumNames<weather::Aerosol> =
+    std::array<std::string_view, 4>{"haze", "dust", "smoke", "ash"};
 }  // namespace welkin

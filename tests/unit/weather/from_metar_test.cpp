@@ -272,6 +272,40 @@ TEST(FromMetar, Precipitation) {
             PrecipitationKind::kSnow);
 }
 
+TEST(FromMetar, AerosolIsTheHeaviestAtTheStation) {
+  const auto of = [](const std::string& what) {
+    return weatherOf("OEJN 211200Z 33018KT " + what + " NSC 35/05 Q1006").aerosol;
+  };
+  for (const char* dust : {"2000 DU", "2000 SA", "2000 SS", "0200 +DS", "6000 PO", "3000 BLDU", "3000 BLSA",
+                           "4900 DRSA", "4900 DRDU", "3000 FU DU", "3000 DU FU"})
+    EXPECT_EQ(of(dust), Aerosol::kDust) << dust;
+  for (const char* haze : {"3000 HZ", "3000 BR", "5000 DRDU", "9999 DRSA", "//// DRSA", "9999 VCSS",
+                           "9999 VCBLDU", "3000 BLSN", "9999", "2000 +SHRA"})
+    EXPECT_EQ(of(haze), Aerosol::kHaze) << haze;
+  for (const char* smoke : {"3000 FU", "3000 HZ FU", "9999 DRDU FU"})
+    EXPECT_EQ(of(smoke), Aerosol::kSmoke) << smoke;
+  for (const char* ash : {"3000 VA", "3000 VA DU", "3000 DU FU VA"}) EXPECT_EQ(of(ash), Aerosol::kAsh) << ash;
+}
+
+TEST(FromMetar, SnowOnTheGroundByTheReportAlone) {
+  const auto of = [](const std::string& weather, const std::string& rest) {
+    return weatherOf("UUEE 211200Z 33008KT 3000 " + weather + " OVC020 " + rest).snowOnGround;
+  };
+  for (const char* snow : {"-SN", "SN", "+SN", "SG", "BLSN", "DRSN", "-SHSN", "RASN", "VCBLSN"}) {
+    EXPECT_TRUE(of(snow, "00/M01 Q1006")) << snow;
+    EXPECT_TRUE(of(snow, "///// Q1006")) << snow;
+    EXPECT_FALSE(of(snow, "01/M01 Q1006")) << snow;
+  }
+  for (const char* none : {"FZRASN", "FZRA", "RA", "PL", "BR", "GS", "VCSH"})
+    EXPECT_FALSE(of(none, "M02/M03 Q1006")) << none;
+  EXPECT_TRUE(of("SN", "00/M01 A2992 RMK T00041011"));
+  EXPECT_FALSE(of("SN", "01/M01 A2992 RMK T00051011"));
+  for (const char* runway : {"R24/490150", "R24L/590250", "R24/890150", "R/SNOCLO", "SNOCLO", "88490150"})
+    EXPECT_TRUE(of("BR", "05/01 Q1006 " + std::string(runway))) << runway;
+  for (const char* runway : {"R24/290150", "R24/790150", "R24/CLRD70", "R24/4000", "88CLRD70", "R24///////"})
+    EXPECT_FALSE(of("BR", "M05/M06 Q1006 " + std::string(runway))) << runway;
+}
+
 TEST(FromMetar, VisibilityAndHaze) {
   // Reports go by a contrast of 5 %, Weather by 2 %: the air is the same.
   const double smokeM = weatherOf("VIDP 220230Z 24004KT 1200 FU NSC 21/16 Q1019").visibilityM;
