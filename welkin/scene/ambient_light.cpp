@@ -270,7 +270,7 @@ AmbientLight ambientLight(const SkyState& s) {
   const auto taken = static_cast<float>(shade.slantCover), passes = static_cast<float>(shade.passes),
              scatteredDown = static_cast<float>(shade.scatteredDown()),
              through = static_cast<float>(shade.diffuse), aside = static_cast<float>(shade.aside);
-  const glm::vec3 albedo(s.scene.ground.albedo);
+  const glm::vec3 albedo(groundAlbedo(s.scene, s.weather));
   // What goes through clouds fell on them where the sky is darker and less blue than at the ground.
   const glm::vec3 skyOnClouds = clearSkyAt(atmosphere, from, shade.lightM).along[2];
   const float gaps = std::min(1.0f - cover, through);

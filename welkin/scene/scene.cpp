@@ -83,7 +83,10 @@ void describe(Output& o, ParamVisitor& v) {
 }
 
 void describe(Ground& g, ParamVisitor& v) {
-  v.value({"albedo", "", "reflectance of the ground, linear Rec. 709 red, green, blue", 0, 1}, g.albedo);
+  v.value({"albedo", "", "reflectance of the ground without snow, linear Rec. 709 red, green, blue", 0, 1},
+          g.albedo);
+  v.choice({"snow", "", "whether snow lies on the ground; auto: where the weather report has snow and frost"},
+           g.snow);
 }
 
 void describe(Scene& s, ParamVisitor& v) {

@@ -63,8 +63,11 @@ struct Output {
 };
 void describe(Output& o, ParamVisitor& v);
 
+enum class Snow { kAuto, kNone, kLying };  // kAuto: as the weather says
+
 struct Ground {
-  glm::dvec3 albedo{0.13, 0.14, 0.09};  // linear Rec. 709
+  glm::dvec3 albedo{0.13, 0.14, 0.09};  // linear Rec. 709, without snow
+  Snow snow = Snow::kAuto;
   bool operator==(const Ground&) const = default;
 };
 void describe(Ground& g, ParamVisitor& v);
@@ -146,6 +149,8 @@ namespace welkin {
 template <>
 inline constexpr auto kEnumNames<scene::Projection> =
     std::array<std::string_view, 4>{"perspective", "fisheye", "equirect", "cubemap"};
+template <>
+inline constexpr auto kEnumNames<scene::Snow> = std::to_array<std::string_view>({"auto", "none", "lying"});
 template <>
 inline constexpr auto kEnumNames<scene::Quality> =
     std::array<std::string_view, 4>{"low", "medium", "high", "ultra"};

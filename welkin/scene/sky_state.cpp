@@ -134,6 +134,39 @@ void ClearSkyKeyInProgress::computeTo(int part) {
   }
 }
 
+glm::dvec3 groundAlbedo(const Scene& scene, const weather::Weather& weather) {
+  // Of fields and woods under new snow, together.
+  constexpr glm::dvec3 kSnow(0.65, 0.67, 0.70);
+  const bool lies =
+      scene.ground.snow == Snow::kLying || (scene.ground.snow == Snow::kAuto && weather.snowOnGround);
+  return lies ? kSnow : scene.ground.albedo;
+}
+
+namespace {
+
+// What the report says of it, where the scene leaves that to it.
+sky::AtmosphereParams atmosphereOf(const Scene& scene, const weather::Weather& weather) {
+  sky::AtmosphereParams params = scene.atmosphere;
+  if (params.aerosol != sky::Aerosol::kAuto) return params;
+  switch (weather.aerosol) {
+    case weather::Aerosol::kHaze:
+      params.aerosol = sky::Aerosol::kHaze;
+      break;
+    case weather::Aerosol::kDust:
+      params.aerosol = sky::Aerosol::kDust;
+      break;
+    case weather::Aerosol::kSmoke:
+      params.aerosol = sky::Aerosol::kSmoke;
+      break;
+    case weather::Aerosol::kAsh:
+      params.aerosol = sky::Aerosol::kAsh;
+      break;
+  }
+  return params;
+}
+
+}  // namespace
+
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous) {
   if (previous) {
     SkyState s = *previous;
@@ -163,8 +196,9 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
   s.sheetCover = std::move(cover.sheets);
   s.skyCover = cover.sky;
   for (std::string& warning : s.metaballs->warnings()) s.warnings.push_back(std::move(warning));
-  s.atmosphere = std::make_shared<sky::Atmosphere>(scene.atmosphere, s.weather.visibilityM,
-                                                   scene.place.altitudeM, glm::vec3(scene.ground.albedo));
+  s.atmosphere =
+      std::make_shared<sky::Atmosphere>(atmosphereOf(scene, s.weather), s.weather.visibilityM,
+                                        scene.place.altitudeM, glm::vec3(groundAlbedo(scene, s.weather)));
   for (ClearSkyKey& none : s.clearSky) none.atS = std::numeric_limits<double>::quiet_NaN();
   moveSky(s, secondsAfter);
   return s;

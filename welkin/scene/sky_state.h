@@ -78,6 +78,9 @@ struct SkyState {
 // cannot be read.
 weather::Weather weatherOf(const Scene& scene);
 
+// Reflectance of the ground, linear Rec. 709: of snow where it lies.
+glm::dvec3 groundAlbedo(const Scene& scene, const weather::Weather& weather);
+
 // Builds the sky `secondsAfter` the scene's time. What does not depend on the instant (noise, patterns), and
 // key instants that both need, are taken from `previous` when given, which must come from the same scene; the
 // sky is the same either way. The delivered cover is measured only without `previous`, as it costs more than

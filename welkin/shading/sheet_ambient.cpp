@@ -90,7 +90,7 @@ class Descent {
     glm::vec3 sky, light;  // illuminance by the sky, lux; luminance of the ground
   };
   AtGround atGround() const {
-    const glm::vec3 albedo(state_.scene.ground.albedo);
+    const glm::vec3 albedo(scene::groundAlbedo(state_.scene, state_.weather));
     glm::vec3 lit(0.0f);
     for (std::size_t l = 0; l < state_.lights.size(); ++l)
       lit += horizontalIlluminance(state_, state_.lights[l], 0.0) * static_cast<float>(direct_[l]);

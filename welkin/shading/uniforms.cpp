@@ -143,7 +143,7 @@ void skyUniforms(const scene::SkyState& state, Uniforms& uniforms) {
   putMoments(u, "uBelowLight[0]", state.ambient.below);
   putMoments(u, "uBelowLight[1]", state.ambient.belowHigh);
   putEye(u, state.ambient.air, s.camera.eyeM);
-  u.put("", "uGroundAlbedo", glm::vec3(s.ground.albedo));
+  u.put("", "uGroundAlbedo", glm::vec3(scene::groundAlbedo(s, state.weather)));
 
   const optics::DropletPhase droplets =
       optics::dropletPhase(static_cast<float>(scene::dropletDiameterUm(state.weather)));

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "tests/testing/skies.h"
 #include "welkin/core/colour.h"
 #include "welkin/core/units.h"
 #include "welkin/scene/sky_state.h"
@@ -189,6 +190,30 @@ TEST(AmbientLight, OfCloudsInSunlitAirHasNoSideWithoutAMean) {
         }
   EXPECT_GT(darker, 0);
   EXPECT_GT(brighter, 0);
+}
+
+// The report's snow and dust are in the ground and the air, unless the scene says otherwise.
+TEST(AmbientLight, ReportsWhitenTheGroundAndColourTheAir) {
+  const auto skyOf = [](const char* report, Snow snow, sky::Aerosol aerosol) {
+    Scene s = testing::clearScene(40.0);
+    s.metar = report;
+    s.ground.snow = snow;
+    s.atmosphere.aerosol = aerosol;
+    return buildSky(s, 0.0);
+  };
+  constexpr auto kFrost = "EFHK 211150Z 27010KT 9999 -SN NSC M12/M15 Q1005",
+                 kDust = "HECA 211150Z 27025KT 0800 SS NSC 34/04 Q1005";
+  const SkyState frost = skyOf(kFrost, Snow::kAuto, sky::Aerosol::kAuto),
+                 bare = skyOf(kFrost, Snow::kNone, sky::Aerosol::kAuto),
+                 dust = skyOf(kDust, Snow::kAuto, sky::Aerosol::kAuto),
+                 haze = skyOf(kDust, Snow::kAuto, sky::Aerosol::kHaze),
+                 both = skyOf(kDust, Snow::kLying, sky::Aerosol::kAuto);
+  EXPECT_GT(frost.ambient.ground.y, 3.0f * bare.ambient.ground.y);
+  EXPECT_EQ(glm::vec3(groundAlbedo(bare.scene, bare.weather)), glm::vec3(bare.scene.ground.albedo));
+  EXPECT_EQ(frost.atmosphere->uniforms().groundAlbedo, glm::vec3(groundAlbedo(frost.scene, frost.weather)));
+  const auto redness = [](const SkyState& s) { return s.ambient.skyLow.x / s.ambient.skyLow.z; };
+  EXPECT_GT(redness(dust), 1.2f * redness(haze));
+  EXPECT_GT(both.ambient.ground.y, 3.0f * dust.ambient.ground.y);
 }
 
 }  // namespace
