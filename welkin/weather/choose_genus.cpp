@@ -26,12 +26,24 @@ Genus chooseHigh(const GenusQuestion& q) {
   return Genus::kCirrus;
 }
 
+// Showers fall from what is named CB or TCU; without these, from heaps, and where the sky is overcast from
+// the one sheet that is dark enough: convection embedded in nimbostratus (Houze, Cloud Dynamics, 1993,
+// chapter 6).
+bool showersFallFromIt(const GenusQuestion& q) {
+  return q.precipitation == PrecipitationCharacter::kShowers && q.thickest && !q.convectionNamed;
+}
+
 Genus chooseMiddle(const GenusQuestion& q) {
   const bool steady = q.precipitation == PrecipitationCharacter::kSteady;
   // Steady rain or snow that falls out of a middle sheet: nimbostratus below 3 km, where it merges (Atlas),
   // else altostratus.
   if (steady && q.thickest && q.cover >= MetarCover::kBroken)
     return q.baseM < 3000.0 ? Genus::kNimbostratus : Genus::kAltostratus;
+  if (showersFallFromIt(q)) {
+    if (q.cover == MetarCover::kOvercast)
+      return q.baseM < 3000.0 ? Genus::kNimbostratus : Genus::kAltostratus;
+    if (!q.heapsBelow && q.baseM < 4500.0) return Genus::kCumulus;
+  }
   if (q.cover == MetarCover::kOvercast) return Genus::kAltostratus;
   // Heaps over hot dry land have their bases this high.
   const bool hotAndDry = q.condensationM && *q.condensationM > 1800.0;
@@ -49,6 +61,8 @@ Genus chooseLow(const GenusQuestion& q) {
     if (q.baseM < 600.0) return Genus::kStratus;
     return Genus::kStratocumulus;
   }
+  if (muchCover && showersFallFromIt(q))
+    return q.cover == MetarCover::kOvercast ? Genus::kNimbostratus : Genus::kCumulus;
   if (q.fog && q.baseM < 300.0) return Genus::kStratus;
   if (muchCover) {
     if (q.baseM < 300.0) return Genus::kStratus;

@@ -18,6 +18,8 @@ struct GenusQuestion {
   double baseM = 0.0;     // above the ground
   bool thickest = false;  // the lowest of the layers with the largest amount: what falls, falls from it
   bool convectionBelow = false;  // a lower layer is CB or TCU
+  bool convectionNamed = false;  // any layer is
+  bool heapsBelow = false;       // a lower layer is of heaps or storms
   PrecipitationCharacter precipitation = PrecipitationCharacter::kNone;
   bool fog = false;
   std::optional<double> condensationM;  // lifting condensation level above the ground

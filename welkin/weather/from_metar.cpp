@@ -89,6 +89,7 @@ class Builder {
   PresentWeather present_;
   std::optional<double> condensationM_;
   bool fogLayer_ = false;
+  std::size_t thickest_ = 0;  // of the layers, the lowest of the largest amount
   Weather weather_;
 };
 
@@ -268,16 +269,20 @@ void Builder::addClouds() {
   weather_.requestedOktas = stack.totalOktas;
 
   // What falls comes from the lowest layer of the largest amount.
-  const auto thickest = std::max_element(covers.begin(), covers.end());
-  bool convectionBelow = false;
+  thickest_ = static_cast<std::size_t>(std::max_element(covers.begin(), covers.end()) - covers.begin());
+  const bool convectionNamed = std::any_of(reported.begin(), reported.end(),
+                                           [](const Reported& r) { return r.type != MetarCloudType::kNone; });
+  bool convectionBelow = false, heapsBelow = false;
   for (std::size_t i = 0; i < reported.size(); ++i) {
     const Reported& r = reported[i];
     GenusQuestion q;
     q.cover = r.cover;
     q.type = r.type;
     q.baseM = r.baseM;
-    q.thickest = static_cast<std::ptrdiff_t>(i) == thickest - covers.begin();
+    q.thickest = i == thickest_;
     q.convectionBelow = convectionBelow;
+    q.convectionNamed = convectionNamed;
+    q.heapsBelow = heapsBelow;
     q.precipitation = present_.character;
     q.fog = present_.fog == FogKind::kFog;
     q.condensationM = condensationM_;
@@ -286,6 +291,7 @@ void Builder::addClouds() {
     convectionBelow = convectionBelow || r.type != MetarCloudType::kNone;
 
     const Genus genus = chooseGenus(q);
+    heapsBelow = heapsBelow || genus == Genus::kCumulus || genus == Genus::kCumulonimbus;
     Layer layer = typicalLayer(genus, latitudeDeg_);
     layer.baseM = r.baseM;
     layer.oktas = std::clamp(stack.ownOktas[i], 0.0, 8.0);
@@ -325,23 +331,36 @@ void Builder::addThunderstorm() {
   note("Thunder is reported without CB; the layer at " + metres(storm.baseM) + " is taken for it.");
 }
 
-// Shafts of rain beneath heaps and storms. Steady rain falls everywhere and is in the visibility. A storm
-// rains somewhere, whatever falls at the station (International Cloud Atlas: cumulonimbus is often
-// accompanied by precipitation); towering cumulus and other heaps where showers are reported, there or in the
-// vicinity.
+// Shafts of rain beneath heaps, storms and sheets that showers fall from. Steady rain falls everywhere and is
+// in the visibility. A storm rains somewhere, whatever falls at the station (International Cloud Atlas:
+// cumulonimbus is often accompanied by precipitation); towering cumulus and other heaps where showers are
+// reported, there or in the vicinity; nimbostratus where it is the overcast of showers, and any other sheet
+// where no heap is.
 void Builder::addRain() {
   const bool showers = present_.character == PrecipitationCharacter::kShowers;
   const bool around =
       present_.vicinity.find("SH") != std::string::npos || present_.vicinity.find("TS") != std::string::npos;
   bool falls = false;
-  for (Layer& layer : weather_.layers) {
+  auto& layers = weather_.layers;
+  const bool heaps = std::any_of(layers.begin(), layers.end(), [](const Layer& l) {
+    return l.genus == Genus::kCumulus || l.genus == Genus::kCumulonimbus;
+  });
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    Layer& layer = layers[i];
     if (layer.genus == Genus::kCumulonimbus) {
       layer.rainMmPerH = showers ? std::max(present_.rateMmPerH, kStormRainMmPerH) : kStormRainMmPerH;
     } else if (layer.genus == Genus::kCumulus && (showers || around)) {
       layer.rainMmPerH = showers ? present_.rateMmPerH : kShowerMmPerH;
+    } else if (showers && i == thickest_ && !isIce(layer.genus) &&
+               (layer.genus == Genus::kNimbostratus || !heaps)) {
+      layer.rainMmPerH = present_.rateMmPerH;
+      note("Showers fall from a sheet of cloud at " + metres(layer.baseM) + "; it is taken for " +
+           std::string(kEnumNames<Genus>[static_cast<std::size_t>(layer.genus)]) + ".");
     }
     falls = falls || layer.rainMmPerH > 0.0;
   }
+  if (showers && !falls && !layers.empty())
+    note("Showers are reported but no cloud that they could fall from; they are not drawn.");
   if (!present_.vicinity.empty() && !(falls && around))
     note("In the vicinity only, and not drawn: " + present_.vicinity + ".");
 }

@@ -66,6 +66,23 @@ TEST(FromMetar, ShaftsOfRainFallFromHeapsAndStorms) {
   EXPECT_EQ(rainOf("FEW020 SCT030CB")[0], 0.0);
   EXPECT_GT(rainOf("FEW020 SCT030CB")[1], 10.0);
   EXPECT_GT(rainOf("+TSRA SCT030CB")[0], 10.0);
+  // From an overcast too, by its rate (15 mm/h and 1.2, times 1.6), once.
+  EXPECT_EQ(rainOf("+SHRA OVC020"), (Rain{24.0}));
+  EXPECT_EQ(rainOf("+SHRA FEW250 OVC020"), (Rain{24.0, 0.0}));
+  EXPECT_EQ(rainOf("-SHRA OVC120"), (Rain{1.6 * 1.2}));
+  EXPECT_EQ(rainOf("SHRA SCT020CB OVC040")[1], 0.0);
+  EXPECT_EQ(rainOf("SHRA FEW020 BKN080")[1], 0.0);
+  EXPECT_EQ(rainOf("SHRA OVC300"), (Rain{0.0}));
+}
+
+TEST(FromMetar, ShowersFromAnOvercastAreSaidAndDark) {
+  const Weather heavy = weatherOf("LSZH 211200Z 24005KT 3000 +SHRA OVC020 12/11 Q1005");
+  EXPECT_TRUE(anyNote(heavy, "Showers fall from a sheet of cloud at 610 m; it is taken for nimbostratus."));
+  const auto depth = [](const Layer& l) { return l.extinctionPerM * (l.topM - l.baseM); };
+  EXPECT_GT(depth(heavy.layers.at(0)), 23.0);
+  EXPECT_TRUE(
+      anyNote(weatherOf("LSZH 211200Z 24005KT 3000 SHRA OVC300 12/11 Q1005"), "no cloud that they could"));
+  EXPECT_FALSE(anyNote(weatherOf("LSZH 211200Z 24005KT 3000 SHRA BKN030 12/11 Q1005"), "Showers"));
 }
 
 // Without a word about cloud precipitation falls from some; where there is said to be none, that is noted.
@@ -128,6 +145,20 @@ TEST(FromMetar, GenusFollowsFromHeightAmountAndWeather) {
       {"LSZH 211200Z 24005KT 4000 -DZ OVC008 08/07 Q1015", 47, 11, 13, {kStratus}},
       {"LSZH 211200Z 24005KT 6000 RA SCT010 OVC040 08/07 Q1005", 47, 11, 13, {kStratus, kNimbostratus}},
       {"LSZH 211200Z 24005KT 9999 -SHRA SCT030 08/04 Q1005", 47, 4, 13, {kCumulus}},
+      {"LSZH 211200Z 24005KT 3000 +SHRA OVC020 12/11 Q1005", 47, 4, 13, {kNimbostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHSN OVC020 M01/M02 Q1005", 47, 1, 13, {kNimbostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA OVC008 12/11 Q1005", 47, 4, 13, {kNimbostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA BKN008 12/11 Q1005", 47, 4, 13, {kCumulus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA SCT010 OVC020 12/11 Q1005", 47, 4, 13, {kCumulus, kNimbostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA OVC080 12/11 Q1005", 47, 4, 13, {kNimbostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA OVC120 12/11 Q1005", 47, 4, 13, {kAltostratus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA BKN080 12/11 Q1005", 47, 4, 13, {kCumulus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA FEW020 BKN080 12/11 Q1005", 47, 4, 13, {kCumulus, kAltocumulus}},
+      {"LSZH 211200Z 24005KT 3000 SHRA FEW020CB OVC040 12/11 Q1005",
+       47,
+       4,
+       13,
+       {kCumulonimbus, kStratocumulus}},
       {"LSZH 211200Z 24005KT 9999 FEW030CB SCT040 BKN100 20/14 Q1012",
        47,
        6,
