@@ -34,6 +34,8 @@ constexpr double kVisibilityOutsideFogM = 10000.0;
 // A sky is no longer discerned through this optical depth: the sun's disc is lost in its aureole (Linskens
 // and Bohren, Appearance of the sun and the moon seen through clouds, 1994: about 6 to 10).
 constexpr double kObscuringOpticalDepth = 6.0;
+// Visibility in dust, smoke or snow that hides the sky, where it is missing.
+constexpr double kObscuringVisibilityM = 500.0;
 constexpr double kLeastObscuringDepthM = 60.0, kMostObscuringDepthM = 1500.0;
 
 // Fog through which clouds or a clear sky are reported. Its vertical optical depth makes it hide what is seen
@@ -89,6 +91,7 @@ class Builder {
   PresentWeather present_;
   std::optional<double> condensationM_;
   bool fogLayer_ = false;
+  bool airObscures_ = false;  // VV by what floats in the air or by snow, not by fog
   std::size_t thickest_ = 0;  // of the layers, the lowest of the largest amount
   Weather weather_;
 };
@@ -147,6 +150,8 @@ void Builder::setSurface() {
       })) {
     present_.character = PrecipitationCharacter::kShowers;
   }
+  airObscures_ =
+      metar_.skyObscured && present_.fog == FogKind::kNone && (present_.lithometeors || present_.snowInAir);
   weather_.precipitation = present_.kind;
   weather_.precipitationMmPerH = present_.rateMmPerH;
   weather_.thunder = present_.thunder;
@@ -197,7 +202,8 @@ std::vector<Builder::Reported> Builder::settleBases() {
     // From the ground up; what is at one height stays in the report's order.
     layers.insert(std::upper_bound(layers.begin(), layers.end(), r, lower), r);
   }
-  if (layers.empty() && !metar_.cavok && !metar_.skyObscured && present_.fog != FogKind::kFog) {
+  if (layers.empty() && !metar_.cavok && (!metar_.skyObscured || airObscures_) &&
+      present_.fog != FogKind::kFog) {
     const bool falls =
         present_.kind != PrecipitationKind::kNone && present_.character != PrecipitationCharacter::kNone;
     const bool clear = !unobserved && metar_.clear != MetarClear::kNotSaid;
@@ -207,7 +213,7 @@ std::vector<Builder::Reported> Builder::settleBases() {
       if (falls) note("Precipitation falls from a sky that is said to be without cloud; none is drawn.");
     } else if (falls) {
       // It falls from somewhere.
-      const bool showers = present_.character == PrecipitationCharacter::kShowers;
+      const bool showers = present_.character == PrecipitationCharacter::kShowers && !airObscures_;
       const MetarLayer assumed{showers ? MetarCover::kBroken : MetarCover::kOvercast,
                                {},
                                showers ? MetarCloudType::kToweringCumulus : MetarCloudType::kNone};
@@ -388,6 +394,11 @@ void Builder::limitDepths() {
 
 void Builder::addFog() {
   const bool fog = present_.fog == FogKind::kFog;
+  if (airObscures_) {
+    note(std::string("The sky is obscured by ") + (present_.snowInAir ? "snow" : "dust, smoke or haze") +
+         " and not by fog: the air has the reported visibility.");
+    return;
+  }
   if (!metar_.skyObscured && present_.fog == FogKind::kNone) return;
 
   const double reportedM = metar_.visibilityM.value_or(300.0);
@@ -437,7 +448,9 @@ void Builder::setVisibility() {
                               : 0.6;
   const double clearM = clearVisibilityM(humidity);
   if (!metar_.visibilityM) {
-    weather_.visibilityM = fogLayer_ ? kVisibilityOutsideFogM : clearM;
+    weather_.visibilityM = fogLayer_      ? kVisibilityOutsideFogM
+                           : airObscures_ ? kVisibilityOfMor * kObscuringVisibilityM
+                                          : clearM;
     note("The visibility is missing; " + metres(weather_.visibilityM) + " is assumed.");
     return;
   }

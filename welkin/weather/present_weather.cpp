@@ -78,6 +78,9 @@ PresentWeather readPresentWeather(std::span<const std::string> groups, double te
 
     const auto has = [&](std::string_view code) { return hasCode(body, code); };
     if (has("FG")) w.fog = fogKind(body);
+    for (const std::string_view code : {"DU", "SA", "SS", "DS", "PO", "FU", "VA", "HZ"})
+      w.lithometeors = w.lithometeors || has(code);
+    w.snowInAir = w.snowInAir || has("SN") || has("SG");
     const bool storm = has("TS");
     w.thunder = w.thunder || storm;
     // Drifting and blowing snow comes from the ground, not from a cloud.

@@ -20,6 +20,9 @@ struct PresentWeather {
   bool heavy = false;
   bool thunder = false;
   FogKind fog = FogKind::kNone;
+  // What hides the sky without fog, there or blown there: dust, sand, smoke, ash and haze; snow.
+  bool lithometeors = false;
+  bool snowInAir = false;
   std::string vicinity;  // the groups that begin with VC, for a note
 };
 

@@ -213,7 +213,31 @@ TEST(FromMetar, VerticalVisibilityObscuresTheSky) {
   EXPECT_GE(fog.topM, 200 * kMetresPerFoot);
   EXPECT_GT(fog.extinctionPerM * fog.topM, 5.0) << "the sun's disc is hidden";
   EXPECT_GE(w.visibilityM, 5000.0) << "haze is not fog";
-  EXPECT_EQ(weatherOf("PANN 231053Z 00000KT 1/4SM +SN VV/// M02/M02 A2994").requestedOktas, 8.0);
+  EXPECT_EQ(weatherOf("EGPD 231053Z 00000KT 0800 RA BR VV002 10/10 Q1004").layers.at(0).genus, Genus::kFog);
+}
+
+TEST(FromMetar, DustAndSnowThatObscureAreNoFog) {
+  const auto of = [](const std::string& what) {
+    return weatherOf("OEJN 211200Z 33018KT " + what + " M03/M05 Q1006");
+  };
+  for (const char* weather : {"DU", "SA", "+SS", "DS", "FU", "VA", "HZ", "BLDU", "HZ BR", "BLSN", "DRSN"}) {
+    const Weather w = of("0400 " + std::string(weather) + " VV003");
+    EXPECT_TRUE(w.layers.empty()) << weather;
+    EXPECT_EQ(w.requestedOktas, 0.0) << weather;
+    EXPECT_NEAR(std::exp(-3.912 / w.visibilityM * 400.0), 0.05, 1e-4) << weather;
+    EXPECT_TRUE(anyNote(w, "obscured by")) << weather;
+    EXPECT_EQ(generaOf(of("0400 FG " + std::string(weather) + " VV003")), std::vector{Genus::kFog})
+        << weather;
+  }
+  for (const char* snow : {"+SN", "SHSN", "-SN BLSN"}) {  // it falls from cloud that is not seen
+    const Weather w = of("0400 " + std::string(snow) + " VV///");
+    EXPECT_EQ(generaOf(w), std::vector{Genus::kNimbostratus}) << snow;
+    EXPECT_EQ(w.requestedOktas, 8.0) << snow;
+    EXPECT_NEAR(w.visibilityM, 522.3, 0.1) << snow;
+    EXPECT_TRUE(anyNote(w, "obscured by snow and not by fog")) << snow;
+  }
+  EXPECT_NEAR(of("//// SS VV///").visibilityM, 652.9, 0.1) << "500 m by 5 %";
+  EXPECT_EQ(generaOf(of("0400 BR VV003")), std::vector{Genus::kFog});
 }
 
 TEST(FromMetar, FogUnderAReportedSkyIsShallow) {
