@@ -135,7 +135,11 @@ void CoverSearch::step() {
   }
   // An overcast that is only just thick enough to count as cloud everywhere would show blue through: half a
   // deviation more.
-  if (++bisections_ == kBisections)
+  if (++bisections_ < kBisections) return;
+  // What lies beneath the eye hides none of the sky however much of it there is.
+  if (target_ == 0.0 && hiddenAtLow_ == 0)
+    result_.threshold = kLeastThreshold;
+  else
     result_.threshold = fraction_ >= 0.99 ? low_ - 0.5f : 0.5f * (low_ + high_);
 }
 

@@ -42,7 +42,8 @@ double coverOf(std::span<const float> opticalDepths);
 inline constexpr float kLeastThreshold = -4.0f;
 
 // The layer's threshold at which its own measured cover is `fraction`, by bisection (cover falls as the
-// threshold rises). Where the layer is too thin to reach it, its extinction is raised. The other layers do
+// threshold rises). Where the layer is too thin to reach it, its extinction is raised. Of a layer
+// that hides nothing at its fullest, as one beneath the eye, 0 is that fullest. The other layers do
 // not matter.
 CloudLayer calibrated(const CloudField& field, int layer, double fraction, const CoverView& view);
 

@@ -431,13 +431,15 @@ void Builder::addFog() {
                      ? 2.0
                      : std::clamp(kThinFogOpticalDepth / layer.extinctionPerM, 4.0, 50.0);
     const double opticalDepth = layer.extinctionPerM * layer.topM;
-    // Banks cover a part of the aerodrome, patches less.
+    // Banks cover a part of the aerodrome, patches less, and what ends beneath the eye none of the sky.
     const double share = present_.fog == FogKind::kPartial   ? 0.5
                          : present_.fog == FogKind::kPatches ? 0.3
+                         : present_.fog == FogKind::kShallow ? 0.0
                                                              : 1.0;
     layer.oktas = 8.0 * share * std::min(opticalDepth / kCoverDepth, 1.0);
     weather_.requestedOktas = combinedOktas(weather_.requestedOktas, layer.oktas);
-    note("The fog lets the sky be seen: it is drawn " + metres(layer.topM) + " deep.");
+    note("The fog lets the sky be seen: it is drawn " + metres(layer.topM) + " deep" +
+         (present_.fog == FogKind::kShallow ? ", below the eye." : "."));
   }
   weather_.layers.insert(weather_.layers.begin(), layer);
 }

@@ -86,6 +86,17 @@ TEST(Cover, ThinLayersAreThickenedUntilTheyHide) {
   EXPECT_GT(measureCover(CloudField(testNoise(), {layer}, 0.0), {}), 0.99);
 }
 
+TEST(Cover, NothingOfALayerBeneathTheEyeIsAllOfIt) {
+  CloudLayer shallow = sheetLike();
+  shallow.baseM = 0.0f;
+  shallow.topM = 1.0f;
+  const CloudLayer all = calibrated(CloudField(testNoise(), {shallow}, 0.0), 0, 0.0, {});
+  EXPECT_EQ(all.threshold, kLeastThreshold);
+  EXPECT_EQ(all.extinction, shallow.extinction);
+  const CloudLayer none = calibrated(CloudField(testNoise(), {sheetLike()}, 0.0), 0, 0.0, {});
+  EXPECT_EQ(measureCover(CloudField(testNoise(), {none}, 0.0), {}), 0.0);
+}
+
 TEST(Cover, IsSearchedInABoundedNumberOfSteps) {
   CloudLayer thin = sheetLike();
   thin.extinction = 1e-6f;  // too little, however often it is thickened

@@ -253,7 +253,11 @@ TEST(FromMetar, FogUnderAReportedSkyIsShallow) {
   const double patches = weatherOf("LIBV 222355Z 19001KT 3000 BCFG NSC 16/16 Q1022").requestedOktas;
   EXPECT_GT(full, patches);
   EXPECT_GT(patches, 0.0);
-  EXPECT_LE(weatherOf("LIBV 222355Z 19001KT 3000 MIFG NSC 16/16 Q1022").layers[0].topM, 2.0);
+  const Weather below = weatherOf("LIBV 222355Z 19001KT 3000 MIFG NSC 16/16 Q1022");
+  EXPECT_LE(below.layers[0].topM, 2.0);
+  EXPECT_EQ(below.layers[0].oktas, 0.0) << "what is beneath the eye covers none of the sky";
+  EXPECT_EQ(below.requestedOktas, 0.0);
+  EXPECT_EQ(weatherOf("LIBV 222355Z 19001KT 3000 MIFG BKN030 16/16 Q1022").requestedOktas, 6.0);
   EXPECT_TRUE(weatherOf("LIBV 222355Z 19001KT 9999 VCFG NSC 16/16 Q1022").layers.empty());
 }
 
