@@ -171,6 +171,11 @@ bool Reader::readHeading() {
     g = groups_.next();
   }
 
+  if (g.text == "TAF") {
+    fail(g, "'TAF' begins a forecast; only reports, METAR and SPECI, are read");
+    return false;
+  }
+
   bool timeIsNext = false;
   if (isStation(g.text)) {
     metar().station = g.text;

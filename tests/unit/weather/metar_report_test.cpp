@@ -53,6 +53,8 @@ TEST(MetarReport, HeadingMistakes) {
   EXPECT_EQ(errorColumns("   "), (Columns{4}));
   EXPECT_EQ(errorColumns("METAR"), (Columns{6}));
   EXPECT_EQ(errorColumns("TAF KMRY 211753Z 2118/2218 24015KT"), (Columns{1}));
+  EXPECT_EQ(parseMetar("TAF KABC 311120Z 3112/0112 24015KT").errors.front().reason,
+            "'TAF' begins a forecast; only reports, METAR and SPECI, are read");
   EXPECT_EQ(errorColumns("METAR 211753Z 24015KT 10SM"), (Columns{7}));
   EXPECT_EQ(errorColumns("KMRY 24015KT 10SM CLR"), (Columns{6}));
   EXPECT_EQ(errorColumns("KMRY 211760Z 24015KT 10SM CLR"), (Columns{6}));
