@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -226,8 +227,16 @@ std::vector<Builder::Reported> Builder::settleBases() {
     }
   }
   if (layers.size() > kMaxLayers - 1) {  // one place is kept for fog
-    layers.resize(kMaxLayers - 1);
-    note("Only the lowest " + std::to_string(kMaxLayers - 1) + " layers are drawn.");
+    // The smallest go first, of equals the highest, so that the total stays; what is named CB or TCU goes
+    // last.
+    const auto smaller = [](const Reported& a, const Reported& b) {
+      return std::tuple(a.type != MetarCloudType::kNone, a.cover, -a.baseM) <
+             std::tuple(b.type != MetarCloudType::kNone, b.cover, -b.baseM);
+    };
+    note(std::to_string(kMaxLayers - 1) + " of the " + std::to_string(layers.size()) +
+         " layers are drawn, without the smallest.");
+    while (layers.size() > kMaxLayers - 1)
+      layers.erase(std::min_element(layers.begin(), layers.end(), smaller));
   }
   return layers;
 }

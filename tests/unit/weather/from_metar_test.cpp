@@ -240,6 +240,18 @@ TEST(FromMetar, DustAndSnowThatObscureAreNoFog) {
   EXPECT_EQ(generaOf(of("0400 BR VV003")), std::vector{Genus::kFog});
 }
 
+TEST(FromMetar, OfTooManyLayersTheSmallestAreLeftOut) {
+  const Weather w = weatherOf(
+      "LSZH 211200Z 24005KT 9999 FEW005 FEW008CB FEW010 SCT020 SCT025 BKN030 BKN040 BKN080 OVC100 12/11 "
+      "Q1015");
+  ASSERT_EQ(w.layers.size(), kMaxLayers - 1);
+  EXPECT_EQ(w.requestedOktas, 8.0);
+  EXPECT_EQ(w.layers.front().genus, Genus::kCumulonimbus);
+  EXPECT_NEAR(w.layers[1].baseM, 2000 * kMetresPerFoot, 1e-9);
+  EXPECT_NEAR(w.layers.back().baseM, 10000 * kMetresPerFoot, 1e-9);
+  EXPECT_TRUE(anyNote(w, "7 of the 9 layers are drawn, without the smallest."));
+}
+
 TEST(FromMetar, FogUnderAReportedSkyIsShallow) {
   const Weather w = weatherOf("LIBV 222355Z 19001KT 0300 FG NSC 16/16 Q1022");
   ASSERT_EQ(w.layers.size(), 1u);
