@@ -120,7 +120,6 @@ void Builder::setSurface() {
   } else {
     note("The temperature is missing; 15 C is assumed.");
   }
-  if (metar_.pressureHpa) weather_.pressureHpa = *metar_.pressureHpa;
 
   const bool tropical = std::abs(latitudeDeg_) < 25.0;
   weather_.surfaceWindFromDeg = tropical ? 90.0 : 270.0;  // trade winds and westerlies

@@ -92,7 +92,6 @@ struct Weather {
   double requestedOktas = 0.0;  // cover of the whole sky by all layers together
   // At the ground, for haze: by a contrast of 2 % (Koschmieder), and so 1.31 times what a report says.
   double visibilityM = 40000.0;
-  double pressureHpa = 1013.25;  // at mean sea level
   double temperatureC = 15.0;
   double surfaceWindFromDeg = 270.0;
   double surfaceWindSpeedMps = 5.0;
