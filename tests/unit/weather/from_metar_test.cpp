@@ -195,6 +195,47 @@ TEST(FromMetar, DepthsGrowWithTheName) {
   EXPECT_LT(depth("SCT025CB", 47), depth("SCT025CB", 5));
 }
 
+double depthOf(std::string_view report) {
+  const Weather w = weatherOf(report);
+  return w.layers.at(0).topM - w.layers.at(0).baseM;
+}
+
+TEST(FromMetar, WinterStormsAreShallower) {
+  // 0.85 of 11,260 m at 47 degrees, less up to 0.4 of it from 15 C down to -10 C.
+  const double top = 0.85 * levelsAt(47.0).highTopM, baseM = 2500 * kMetresPerFoot;
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 9999 SCT025CB 22/16 Q1012"), top - baseM, 1e-6);
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 9999 SCT025CB 05/02 Q1012"), 0.84 * top - baseM, 1e-6);
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 9999 SCT025CB M10/M12 Q1012"), 0.6 * top - baseM, 1e-6);
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 9999 SCT025CB M20/M22 Q1012"), 0.6 * top - baseM, 1e-6);
+}
+
+TEST(FromMetar, HeavyRainFallsFromDeeperNimbostratus) {
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 3000 RA OVC030 12/11 Q1005"), 2500.0, 1e-9);
+  EXPECT_NEAR(depthOf("LSZH 211200Z 24005KT 3000 +RA OVC030 12/11 Q1005"), 3500.0, 1e-9);
+}
+
+TEST(FromMetar, ExtinctionInTheBodyOfClouds) {
+  const auto of = [](const std::string& what) {
+    return weatherOf("LSZH 211200Z 24005KT 9999 " + what + " 22/16 Q1012").layers.at(0).extinctionPerM;
+  };
+  EXPECT_EQ(of("SCT025"), 0.05);      // cumulus
+  EXPECT_EQ(of("SCT025CB"), 0.04);    // cumulonimbus
+  EXPECT_EQ(of("RA OVC030"), 0.025);  // nimbostratus
+}
+
+// What is pressed into less depth stays as opaque as it was, up to twice as dense.
+TEST(FromMetar, ThinnerSheetsAreNoMoreTransparent) {
+  const auto lowest = [](const std::string& sky) {
+    return weatherOf("LSZH 211200Z 24005KT 9999 " + sky + " 10/09 Q1012", 47, 11, 8).layers.at(0);
+  };
+  const Layer free = lowest("BKN020"), pressed = lowest("BKN020 OVC028"), flat = lowest("BKN020 OVC022");
+  EXPECT_EQ(free.genus, Genus::kStratocumulus);
+  EXPECT_EQ(free.extinctionPerM, 0.035);
+  EXPECT_NEAR(pressed.topM - pressed.baseM, 0.85 * 800 * kMetresPerFoot, 1e-6);
+  EXPECT_NEAR(pressed.extinctionPerM * (pressed.topM - pressed.baseM), 0.035 * 350.0, 1e-6);
+  EXPECT_EQ(flat.extinctionPerM, 0.07);
+}
+
 TEST(FromMetar, ASheetEndsBelowTheNext) {
   const Weather w = weatherOf("LSZH 211200Z 24005KT 9999 BKN020 OVC024 10/09 Q1012", 47, 11, 8);
   ASSERT_EQ(w.layers.size(), 2u);
