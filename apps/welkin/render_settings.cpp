@@ -222,6 +222,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   // The place first: what is typical of a layer in the file depends on the latitude.
   Scene flagged;
   if (a.place) setPlace(flagged, "--place", *a.place);
+  bool timeGiven = a.time.has_value();
   bool widthGiven = a.size.has_value(), heightGiven = widthGiven;
   std::optional<ParseError> misfit;  // in the scene file, for flags to mend
   std::optional<std::string> themeFile;
@@ -240,6 +241,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
         *a.scene, a.place ? std::optional<double>(flagged.place.latitudeDeg) : std::nullopt, a.theme);
     widthGiven = widthGiven || file.gives("output.width");
     heightGiven = heightGiven || file.gives("output.height");
+    timeGiven = timeGiven || file.gives("time");
     misfit = file.misfit;
     r.scene = std::move(file.scene);
     if (file.themeFile) themeFile = file.themeFile;
@@ -250,6 +252,7 @@ RenderSettings renderSettings(const RenderArgs& a) {
   if (a.place) setPlace(s, "--place", *a.place);
   set(s, "--metar", "metar", a.metar);
   set(s, "--time", "time", a.time);
+  if (!timeGiven) scene::setTimeOfReport(s);
   set(s, "--at", "at_s", a.at);
   set(s, "--seed", "seed", a.seed);
   set(s, "--eye", "camera.eye_m", a.eye);

@@ -74,6 +74,17 @@ class Stills(ProgramTest):
         r = json.loads((self.folder / "r.json").read_text())
         self.assertGreater(r["layers"][0]["delivered_oktas"], 7.6)
         self.assertEqual(r["notes"], [])
+        self.assertEqual(r["time"], "2026-06-21T11:50:00Z", "the report's own")
+
+    def test_time_far_from_the_reports(self):
+        self.write("s.toml", 'metar = "LSZH 031150Z 28010KT CAVOK 10/05 Q1000"\n')
+        self.succeed("render", "s.toml", "--technique", "plane", *TINY, "-o", "a.png", "--report", "r.json")
+        self.assertEqual(json.loads((self.folder / "r.json").read_text())["time"], "2026-06-03T11:50:00Z")
+        self.succeed("render", "s.toml", "--time", "2026-06-04T11:50Z", "--technique", "plane", *TINY, "-o", "a.png", "--report",
+                     "r.json")
+        r = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(r["time"], "2026-06-04T11:50:00Z")
+        self.assertIn("The report is of day 3 at 11:50 UTC; its weather is drawn for 2026-06-04T11:50:00Z.", r["notes"])
 
     def test_sheets_among_volumes(self):
         (self.folder / "s.toml").write_text(

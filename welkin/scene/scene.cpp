@@ -90,7 +90,10 @@ void describe(Ground& g, ParamVisitor& v) {
 }
 
 void describe(Scene& s, ParamVisitor& v) {
-  v.value({"time", "UTC", "the moment at which the weather is as described, ISO 8601"}, s.time);
+  v.value({"time", "UTC",
+           "the moment at which the weather is as described, ISO 8601; left out beside a report: its day and "
+           "time, in June 2026"},
+          s.time);
   v.value({"at_s", "s", "how long after `time` the (first) picture is taken", -kYearS, kYearS}, s.atS);
   v.value({"seed", "", "chooses one of many skies of the same weather", 0, 9007199254740991.0}, s.seed);
   v.value({"metar", "",

@@ -206,6 +206,7 @@ SceneFile parseDraft(std::string_view text, const std::string& name, std::option
 
   scene.theme.reset();
   validateReport(scene, root, name);
+  if (!file.gives("time")) setTimeOfReport(scene);
   validateLayers(scene.layers, root, name);
   finishSheets(scene.sheets, root, name);
   validateEach(scene.metaballs, root, "metaballs", name);
@@ -230,6 +231,19 @@ SceneFile fitting(SceneFile file) {
 
 bool SceneFile::gives(std::string_view path) const {
   return std::find(given.begin(), given.end(), path) != given.end();
+}
+
+void setTimeOfReport(Scene& scene) {
+  if (!scene.metar) return;
+  const weather::Metar report = weather::parseMetar(*scene.metar).metar;
+  if (!report.day) return;
+  UtcTime time = Scene{}.time;
+  const UtcTime monthStart{time.year, time.month, 1, *report.hour, *report.minute, 0.0};
+  constexpr double kDayS = 86400.0;
+  time = addSeconds(monthStart, (*report.day - 1) * kDayS);
+  if (time.day != *report.day)  // no two months in a row lack it
+    time = addSeconds(addSeconds(monthStart, -kDayS), (*report.day - 31) * kDayS);
+  scene.time = time;
 }
 
 SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg,

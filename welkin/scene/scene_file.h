@@ -50,6 +50,11 @@ SceneFile readSceneDraft(const std::string& path, std::optional<double> latitude
 SceneFile parseScene(std::string_view text, const std::string& name, std::optional<double> latitudeDeg = {},
                      const std::optional<std::string>& theme = {});
 
+// Gives the scene the day, hour and minute of its report, where that can be read, in the month and year of
+// the scene's default time; a day that the month does not have, in the last month before it that has. The
+// readers above do so where the file gives a report and no time.
+void setTimeOfReport(Scene& scene);
+
 // Every key of a scene file, with what is taken when the file does not have it.
 std::vector<ParamDoc> documentSceneFile();
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
 #include <tuple>
 
 #include "welkin/core/error.h"
@@ -10,6 +14,19 @@
 namespace welkin::scene {
 namespace {
 
+constexpr double kHourS = 3600.0, kDayS = 24.0 * kHourS;
+
+// Of the scene's time from the nearest moment with the report's day of the month, hour and minute.
+double secondsFromReport(const UtcTime& time, const weather::Metar& report) {
+  double least = 1e9;
+  for (int days = -31; days <= 31; ++days) {
+    UtcTime t =
+        addSeconds({time.year, time.month, time.day, *report.hour, *report.minute, 0.0}, days * kDayS);
+    if (t.day == *report.day) least = std::min(least, std::abs(secondsBetween(t, time)));
+  }
+  return least;
+}
+
 weather::Weather fromReport(const Scene& scene) {
   const weather::MetarResult result = weather::parseMetar(*scene.metar);
   if (!result.ok())
@@ -19,8 +36,17 @@ weather::Weather fromReport(const Scene& scene) {
     throw ParseError("METAR", 0, 0, "the report is NIL, which says nothing about the weather");
   // Mean solar time: the equation of time is at most a quarter of an hour, which the rules do not feel.
   const UtcTime local = addSeconds(scene.time, scene.place.longitudeDeg / 15.0 * 3600.0);
-  return weather::weatherFromMetar(result.metar, scene.place.latitudeDeg, local.month,
-                                   local.hour + local.minute / 60.0);
+  weather::Weather w = weather::weatherFromMetar(result.metar, scene.place.latitudeDeg, local.month,
+                                                 local.hour + local.minute / 60.0);
+  constexpr double kSameS = 2.0 * kHourS;
+  if (result.metar.day && secondsFromReport(scene.time, result.metar) > kSameS) {
+    std::array<char, 64> of{};
+    std::snprintf(of.data(), of.size(), "day %d at %02d:%02d UTC", *result.metar.day, *result.metar.hour,
+                  *result.metar.minute);
+    w.notes.push_back("The report is of " + std::string(of.data()) + "; its weather is drawn for " +
+                      formatUtcTime(scene.time) + ".");
+  }
+  return w;
 }
 
 weather::Weather byHand(const Scene& scene) {

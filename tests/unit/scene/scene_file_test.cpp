@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "welkin/core/error.h"
 #include "welkin/core/random.h"
 #include "welkin/scene/param_json.h"
+#include "welkin/scene/sky_state.h"
 
 namespace welkin::scene {
 namespace {
@@ -398,6 +400,29 @@ TEST(SceneFile, ExampleInTheDocumentationIsValid) {
   ASSERT_NE(begin, std::string::npos);
   const std::size_t end = doc.find("```", begin + 8);
   EXPECT_NO_THROW(validate(parseScene(doc.substr(begin + 8, end - begin - 8), "docs").scene));
+}
+
+// The report's own time counts where nobody gives another.
+TEST(SceneFile, TimeIsThatOfTheReport) {
+  const auto of = [](const std::string& time, const std::string& report) {
+    const std::string text = "metar = \"LSZH " + report + " 24008KT CAVOK 22/12 Q1018\"\n" + time;
+    return parseScene(text, "s.toml").scene;
+  };
+  EXPECT_EQ(formatUtcTime(of("", "030750Z").time), "2026-06-03T07:50:00Z");
+  EXPECT_EQ(formatUtcTime(of("", "301850Z").time), "2026-06-30T18:50:00Z");
+  EXPECT_EQ(formatUtcTime(of("", "311850Z").time), "2026-05-31T18:50:00Z") << "June has no 31st";
+  EXPECT_EQ(formatUtcTime(parseScene("seed = 2", "s.toml").scene.time), "2026-06-21T12:00:00Z");
+  const auto noted = [&](const std::string& time, const std::string& report) {
+    const Scene scene = of("time = " + time, report);
+    EXPECT_EQ(formatUtcTime(scene.time), time);
+    const auto notes = weatherOf(scene).notes;
+    return std::any_of(notes.begin(), notes.end(),
+                       [](const auto& n) { return n.find("The report is of day") != std::string::npos; });
+  };
+  EXPECT_FALSE(noted("2024-03-10T09:00:00Z", "100750Z"));
+  EXPECT_TRUE(noted("2024-03-10T09:51:00Z", "100750Z"));
+  EXPECT_TRUE(noted("2024-03-11T07:50:00Z", "100750Z"));
+  EXPECT_FALSE(noted("2024-03-01T00:20:00Z", "292350Z")) << "over midnight";
 }
 
 }  // namespace
