@@ -106,6 +106,16 @@ Json decoded(const Metar& m) {
                           : m.visibilityBound == MetarBound::kLessThan ? Json("<")
                                                                        : Json(nullptr);
   j["sky_obscured"] = m.skyObscured;
+  j["cloud_remarks"] = Json::array();
+  for (const auto& c : m.cloudRemarks) {
+    j["cloud_remarks"].push_back({{"genus", kEnumNames<weather::Genus>[static_cast<std::size_t>(c.genus)]},
+                                  {"type", typeName(c.type)},
+                                  {"oktas", c.oktas},
+                                  {"base_ft", orNull(c.baseFt)}});
+  }
+  j["cloud_codes"] = nullptr;
+  if (const auto& c = m.cloudCodes)
+    j["cloud_codes"] = {{"low", orNull(c->low)}, {"middle", orNull(c->middle)}, {"high", orNull(c->high)}};
   j["aerosol"] = kEnumNames<weather::Aerosol>[static_cast<std::size_t>(weather::aerosolOf(m))];
   j["snow_on_ground"] = weather::snowLiesOnGround(m);
   j["nil"] = m.nil;

@@ -13,6 +13,7 @@
 #include "welkin/weather/choose_genus.h"
 #include "welkin/weather/cover.h"
 #include "welkin/weather/genus.h"
+#include "welkin/weather/metar_remarks.h"
 #include "welkin/weather/present_weather.h"
 #include "welkin/weather/wind.h"
 
@@ -70,7 +71,9 @@ class Builder {
     MetarCloudType type;
     double baseM;
     bool assumed;
+    std::optional<Genus> genus = {};  // by the remarks
   };
+  void readRemarks(std::vector<Reported>& layers);
 
   void note(std::string sentence) { weather_.notes.push_back(std::move(sentence)); }
   void setSurface();
@@ -174,6 +177,27 @@ double Builder::climatologicalBaseM(const MetarLayer& layer) const {
   return 1250.0;  // stratocumulus
 }
 
+// What the observer calls them in the remarks wins over what can be guessed.
+void Builder::readRemarks(std::vector<Reported>& layers) {
+  if (metar_.cloudRemarks.empty() && !metar_.cloudCodes) return;
+  std::vector<NamedLayer> named;
+  named.reserve(layers.size());
+  for (const Reported& r : layers) {
+    const int feet = static_cast<int>(std::lround(r.baseM / kMetresPerFoot));
+    named.push_back({r.baseM, r.assumed ? std::nullopt : std::optional(feet), r.type, {}});
+  }
+  const bool steady = present_.character == PrecipitationCharacter::kSteady;
+  nameByRemarks(metar_, latitudeDeg_, steady, named);
+  bool any = false;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    layers[i].genus = named[i].genus;
+    layers[i].type = named[i].type;
+    any = any || named[i].genus;
+  }
+  note(any ? "The remarks name kinds of cloud; they are taken from there."
+           : "The remarks name kinds of cloud that cannot be told which layers they are; they are left out.");
+}
+
 std::vector<Builder::Reported> Builder::settleBases() {
   std::vector<Reported> layers;
   bool unobserved = false;
@@ -202,6 +226,7 @@ std::vector<Builder::Reported> Builder::settleBases() {
     // From the ground up; what is at one height stays in the report's order.
     layers.insert(std::upper_bound(layers.begin(), layers.end(), r, lower), r);
   }
+  readRemarks(layers);
   if (layers.empty() && !metar_.cavok && (!metar_.skyObscured || airObscures_) &&
       present_.fog != FogKind::kFog) {
     const bool falls =
@@ -304,7 +329,7 @@ void Builder::addClouds() {
     q.heated = heated_;
     convectionBelow = convectionBelow || r.type != MetarCloudType::kNone;
 
-    const Genus genus = chooseGenus(q);
+    const Genus genus = r.genus.value_or(chooseGenus(q));
     heapsBelow = heapsBelow || genus == Genus::kCumulus || genus == Genus::kCumulonimbus;
     Layer layer = typicalLayer(genus, latitudeDeg_);
     layer.baseM = r.baseM;

@@ -5,7 +5,7 @@
 // The rules and where they come from stand at the code; in short:
 // - cover: reported amounts are cumulative (cover.h)
 // - genus: from height, amount, CB and TCU, precipitation, closeness to the lifting condensation level, sun
-//   and season
+//   and season; where remarks name it, from these (metar_remarks.h)
 // - depth: from genus, amount, precipitation, latitude (genus.h); a sheet does not reach into the layer above
 //   it
 // - missing: a base or amount that the report says exists but does not give is climatological, `baseAssumed`

@@ -14,8 +14,9 @@
 //   more than a degree above the temperature.
 // - Element missing in the report (solidi, or the group is not there) means an empty value, and is no error,
 //   except that a report must name its station and its time.
-// - The trend (NOSIG, TEMPO, BECMG, INTER, PROB, FM) is recognised and not decoded. Of the remarks only the T
-//   group is read, which gives temperature and dew point to a tenth of a degree.
+// - The trend (NOSIG, TEMPO, BECMG, INTER, PROB, FM) is recognised and not decoded. Of the remarks the T
+// group is
+//   read, which gives temperature and dew point to a tenth of a degree, and those that name genera of cloud.
 // - Lower-case letters are read as upper case: the telegraph alphabet that the code was made for has one case
 //   only.
 // - Any bytes may come in; time is linear in their number.
@@ -30,6 +31,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "welkin/weather/weather.h"
 
 namespace welkin::weather {
 
@@ -70,6 +73,19 @@ struct MetarLayer {
   MetarCloudType type = MetarCloudType::kNone;
 };
 
+// A cloud as remarks name it: SC4 (Canada), 4SC040 (Japan).
+struct MetarCloudRemark {
+  Genus genus = Genus::kCumulus;
+  MetarCloudType type = MetarCloudType::kNone;
+  int oktas = 0;              // of this cloud alone
+  std::optional<int> baseFt;  // above the aerodrome; absent in Canada
+};
+
+// 8/571 (United States): code figures of WMO-No. 306, tables 0513, 0515 and 0509; absent: /.
+struct MetarCloudCodes {
+  std::optional<int> low, middle, high;
+};
+
 // Why a report gives no layers.
 enum class MetarClear {
   kNotSaid,
@@ -102,7 +118,9 @@ struct Metar {
   std::optional<double> temperatureC;       // from the T group of the remarks where there is one
   std::optional<double> dewPointC;
   std::optional<double> pressureHpa;  // reduced to mean sea level (QNH)
-  bool snowOnRunway = false;          // SNOCLO, or a runway's state has dry, wet or compacted snow
+  std::vector<MetarCloudRemark> cloudRemarks;
+  std::optional<MetarCloudCodes> cloudCodes;
+  bool snowOnRunway = false;  // SNOCLO, or a runway's state has dry, wet or compacted snow
 };
 
 struct MetarError {

@@ -11,6 +11,7 @@
 
 #include "welkin/weather/metar.h"
 #include "welkin/weather/metar_groups.h"
+#include "welkin/weather/metar_remarks.h"
 
 namespace welkin::weather {
 namespace {
@@ -559,11 +560,13 @@ void Reader::setClear(const Group& g, MetarClear clear) {
 // The T group gives what the body rounds to whole degrees, so the two differ by half a degree and a little
 // for old instruments.
 void Reader::readRemarks() {
+  bool exactSeen = false;
   while (const Group g = groups_.next()) {
-    if (g.text.front() != 'T') continue;
+    Metar& m = metar();
+    if (readCloudRemark(g.text, m) || exactSeen) continue;
     const auto exact = readExactTemperature(g.text);
     if (!exact) continue;
-    Metar& m = metar();
+    exactSeen = true;
     const auto contradicts = [](const std::optional<double>& body, const std::optional<double>& remark) {
       return body && remark && std::abs(*body - *remark) > 1.05;
     };
@@ -575,9 +578,6 @@ void Reader::readRemarks() {
       if (exact->temperatureC) m.temperatureC = exact->temperatureC;
       if (exact->dewPointC) m.dewPointC = exact->dewPointC;
     }
-    while (groups_.next()) {
-    }
-    return;
   }
 }
 
