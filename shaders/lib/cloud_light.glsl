@@ -103,3 +103,12 @@ WELKIN_FN vec2 cloudSkyShares(CloudDepths d) {
   float up = kSimilarity * d.up, down = kSimilarity * d.down;
   return vec2(down + 2.0f / 3.0f, up + 2.0f / 3.0f) / (4.0f / 3.0f + up + down);
 }
+
+// How much cloud a view has before it, optical depth: between what lies along the sun's line and along the vertical, by how near the view is to
+// them. Across a line neither end of it is ahead: the one takes the other's place over some degrees. keyCounts: by how much the sun's line counts.
+WELKIN_FN float cloudDepthAhead(CloudDepths d, float cosSun, float viewHeight, float keyCounts) {
+  vec2 along = vec2(keyCounts, 1.0f) * vec2(cosSun * cosSun + 0.02f, sqrt(viewHeight * viewHeight + 0.002f));
+  vec2 end = smoothstep(-0.15f, 0.15f, vec2(cosSun, viewHeight));
+  vec2 depth = mix(log(max(vec2(d.fromSun, d.down), 0.01f)), log(max(vec2(d.toSun, d.up), 0.01f)), end);
+  return exp(dot(along, depth) / (along.x + along.y));
+}

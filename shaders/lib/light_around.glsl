@@ -10,10 +10,7 @@ struct LightWeights {
 
 // depths: around the point. cosSun: of the angle between the view and the sun.
 LightWeights lightWeights(CloudDepths depths, float cosSun, float viewHeight) {
-  // How much cloud the view has before it: between what lies along the sun's line and along the vertical, by how near the view is to them.
-  vec2 along = vec2(uKeyCounts, 1.0) * (vec2(cosSun * cosSun, abs(viewHeight)) + 0.005);
-  vec2 depth = max(vec2(cosSun > 0.0 ? depths.toSun : depths.fromSun, viewHeight > 0.0 ? depths.up : depths.down), 0.01);
-  float beyond = exp(dot(along, log(depth)) / (along.x + along.y));
+  float beyond = cloudDepthAhead(depths, cosSun, viewHeight, uKeyCounts);
   return LightWeights(2.7 * exp(-beyond / 14.0) - 0.3, 3.5 - 4.5 * exp(-beyond / 6.0));
 }
 

@@ -55,6 +55,24 @@ TEST(CloudLight, MoreCloudAboveLetsLessSkyThrough) {
   EXPECT_LT(last, 0.02f);
 }
 
+// Across the line to the sun, or level, a view has as much of what lies before as of what lies behind: no
+// edge in the light of even fog, whichever way one turns.
+TEST(CloudLight, TurningDoesNotChangeAtOnceHowMuchCloudIsAhead) {
+  const CloudDepths depths{40.0f, 4.0f, 14.0f, 1.5f};
+  constexpr float kStep = 1e-3f;
+  for (const float other : {0.0f, 0.05f, 0.4f})
+    for (float x = -1.0f; x < 1.0f; x += kStep) {
+      const float cosSun = cloudDepthAhead(depths, x + kStep, other, 1.0f) /
+                           cloudDepthAhead(depths, x, other, 1.0f),
+                  height = cloudDepthAhead(depths, other, x + kStep, 1.0f) /
+                           cloudDepthAhead(depths, other, x, 1.0f);
+      ASSERT_NEAR(cosSun, 1.0f, 0.02f) << x << " " << other;
+      ASSERT_NEAR(height, 1.0f, 0.02f) << x << " " << other;
+    }
+  EXPECT_NEAR(cloudDepthAhead(depths, 1.0f, 0.0f, 1.0f), depths.toSun, 0.1f * depths.toSun);
+  EXPECT_NEAR(cloudDepthAhead(depths, 0.0f, -1.0f, 1.0f), depths.down, 0.1f * depths.down);
+}
+
 TEST(CloudLight, IsPositiveAndFiniteWhereverTheSunIs) {
   for (const float toSun : kDepths)
     for (const float fromSun : kDepths)
