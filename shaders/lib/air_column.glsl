@@ -45,7 +45,7 @@ const float kHalfMost = 65000.0;
 struct AirRay {
   vec3 dir;
   float groundM;
-  float glowM;                    // air beyond has none of the clouds' light: it is over them all
+  float glowM;                    // air beyond is over all clouds
   float cosSun;
   FirstPhases phases;
   vec2 dither;
@@ -90,7 +90,7 @@ AirRay airRay(ivec2 column) {
     }
   }
 #endif
-  vec2 tops = uBandCount == 0 ? vec2(1.0, -1.0) : sphereCrossings(uCloudTopM, dir.z);
+  vec2 tops = sphereCrossings(uOverClouds.w, dir.z);
   return AirRay(dir, groundM, tops.x <= tops.y ? max(tops.y, 0.0) : 0.0, cosSun, phases, dither);
 }
 

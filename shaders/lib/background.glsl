@@ -155,6 +155,15 @@ vec3 groundThroughAir(vec3 dir, float groundM) {
   return groundLuminance(dir, groundM) * through + inscatter;
 }
 
+// What the air over all clouds adds to the clear sky of their light.
+vec3 overCloudsInSky(vec3 dir) {
+  if (uOverClouds.x + uOverClouds.y + uOverClouds.z <= 0.0) return vec3(0.0);
+  vec3 inscatter, through = vec3(1.0);
+  if (uEyeM < uOverClouds.w) aerialLit(dir, sphereCrossings(uOverClouds.w, dir.z).y, inscatter, through);
+  vec3 beyond = atmosphereTransmittance(uAtmosphere, uTransmittance, uEyeM + uGroundAltitudeM, dir.z);
+  return vec3(uOverClouds) * max(through - beyond, 0.0);
+}
+
 vec3 skyLuminance(vec3 dir) {
   vec3 sky = atmosphereSkyLuminance(uAtmosphere, uSkyView, uEyeM + uGroundAltitudeM, dir, uKeyDirection);
 #if defined(WELKIN_AIR_SHADOWS_KNOWN)
@@ -162,7 +171,7 @@ vec3 skyLuminance(vec3 dir) {
 #elif defined(WELKIN_AIR_SHADOWS)
   sky = max(sky - shadowsInSky(dir), 0.0);
 #endif
-  return sky;
+  return sky + overCloudsInSky(dir);
 }
 
 vec3 throughAtmosphere(vec3 dir, vec3 sky, vec3 beyond) {

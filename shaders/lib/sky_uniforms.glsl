@@ -30,6 +30,7 @@ uniform float uClearAir;          // share of the lower air that the sun reaches
 uniform float uAirUnderSheets;    // of what thin sheets alone leave, the share of it
 uniform LightMoments uHaze;       // luminance that hazy air about the eye tends to where it does not: lightTowards()
 uniform LightMoments uCloudGlow;  // by how much clouds make it brighter than it is without them
+uniform vec4 uOverClouds;         // and the air over them all: luminance that it tends to, w: from which height on
 
 // The light that reaches p through the air, tabulated over height and over how high the light stands there: the earth's curve makes it
 // day over some clouds and dusk over others.
@@ -58,10 +59,10 @@ vec3 lightTowards(LightMoments light, vec3 dir) {
 }
 
 // What it adds between two distances where the sun reaches a share of it: air in the shade of clouds has the light about it alone, `about` in that
-// on average; in the sun, a share of it (glow) has the light of the clouds too.
+// on average; in the sun, a share of it (glow) has the light of the clouds about it too, and the rest, over them all, has theirs from below.
 vec3 airBetween(vec3 dir, vec3 nearLit, vec3 nearThrough, vec3 farLit, vec3 farThrough, float lit, float glow, float about) {
   vec3 scattered = nearThrough - farThrough;
-  return mix(about * scattered * lightTowards(uHaze, dir), farLit - nearLit + scattered * (glow * lightTowards(uCloudGlow, dir)), lit);
+  return mix(about * scattered * lightTowards(uHaze, dir), farLit - nearLit + scattered * mix(vec3(uOverClouds), lightTowards(uCloudGlow, dir), glow), lit);
 }
 vec3 shadedAir(vec3 dir, vec3 inscatter, vec3 through, float lit, float about) {
   return airBetween(dir, vec3(0.0), vec3(1.0), inscatter, through, lit, 1.0, about);

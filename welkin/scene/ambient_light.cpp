@@ -186,6 +186,15 @@ glm::vec3 sentBack(const sky::Atmosphere& atmosphere, const AirSources& from, do
   return atmosphere.sphericalAlbedo(altitudeM) * (from.upward - from.bare);
 }
 
+// The same from air over the clouds as luminance that it tends to, from whatever side: a ray has as much of
+// that as the air along it takes from what comes through, and the upper hemisphere then has what is sent
+// back.
+glm::vec3 overClouds(const sky::Atmosphere& atmosphere, const AirSources& from, double heightM) {
+  const double altitudeM = atmosphere.groundAltitudeM() + heightM;
+  const glm::vec3 taken = 1.0f - atmosphere.transmittanceToSpace(altitudeM, kDiffuseMu);
+  return glm::max(sentBack(atmosphere, from, altitudeM), glm::vec3(0.0f)) / glm::max(taken, glm::vec3(1e-4f));
+}
+
 // airAbout(), whatever the eye is there for.
 EyeAir airAtHeight(const sky::Atmosphere& atmosphere, const AirSources& from, float cover, double heightM) {
   EyeAir air;
@@ -208,6 +217,9 @@ EyeAir airAtHeight(const sky::Atmosphere& atmosphere, const AirSources& from, fl
   const sky::LightMoments under = throughGaps(clear, from.gapsOverhead, from.gapsLevel) + from.underClouds;
   air.haze = airLight(atmosphere, (1.0f - above) * under + above * over);
   air.cloudGlow = excess(air.haze, airLight(atmosphere, clear + hemisphere(from.bare, -1.0f)));
+  if (!from.anyVolumes) return air;
+  air.overCloudsM = from.highM;
+  air.overClouds = overClouds(atmosphere, from, std::max(heightM, static_cast<double>(from.highM)));
   return air;
 }
 

@@ -24,6 +24,8 @@ struct EyeAir {
   float airUnderSheets = 1.0f;  // the part of it that thin sheets decide
   AirLight haze;                // about the eye where it does not
   AirLight cloudGlow;           // by how much volumes make that brighter than it is under the clear sky
+  glm::vec3 overClouds{0};      // by how much they make the air over them all brighter than over bare ground
+  float overCloudsM = 0.0f;     // and from which height on
 };
 
 // What the air about eyes at all heights is lit by: airAbout().

@@ -188,6 +188,7 @@ scene::EyeAir airUnder(const scene::SkyState& state, std::span<const SheetInSky>
   air.clearAir = (light.amongVolumes ? air.clearAir : 1.0f) * air.airUnderSheets;
   air.haze = light.onHaze * air.haze;
   air.cloudGlow = light.onGlow * air.cloudGlow;
+  air.overClouds *= light.onGlow;
   return air;
 }
 

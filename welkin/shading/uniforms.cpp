@@ -72,6 +72,7 @@ void putEye(Refill& u, const scene::EyeAir& air, double eyeM) {
   u.put("", "uAirUnderSheets", air.airUnderSheets);
   putAirLight(u, "uHaze", air.haze);
   putAirLight(u, "uCloudGlow", air.cloudGlow);
+  u.put("", "uOverClouds", glm::vec4(air.overClouds, air.overCloudsM));
 }
 
 }  // namespace

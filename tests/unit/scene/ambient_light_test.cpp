@@ -171,6 +171,40 @@ TEST(AmbientLight, OfHazeIsMoreWhereLightComesFrom) {
   EXPECT_GT(over.ambient.air.cloudGlow.mean.y, 0.1f * over.ambient.air.haze.mean.y);
 }
 
+// Over a deck the sky has the deck's light, bluer than that is, and less of it from higher up; in and under
+// it the sky has that of the air over its top, so that nothing jumps on the way through. Clear skies have
+// none.
+TEST(AmbientLight, OfCloudsIsInTheSkyOverThem) {
+  using enum weather::Genus;
+  const char* noon = "2026-06-21T12:00:00Z";
+  const SkyState clear = skyUnder(kStratocumulus, 0.0, noon, 30e3, 2500.0),
+                 over = skyUnder(kStratocumulus, 8.0, noon, 30e3, 2500.0);
+  EXPECT_EQ(clear.ambient.air.overClouds, glm::vec3(0.0f));
+  const EyeAir& air = over.ambient.air;
+  EXPECT_GT(air.overClouds.y, 0.2f * (over.ambient.airSources.upward - over.ambient.airSources.bare).y);
+  EXPECT_LT(air.overClouds.y, 0.6f * (over.ambient.airSources.upward - over.ambient.airSources.bare).y);
+  ASSERT_GT(air.overCloudsM, 1000.0f);
+  ASSERT_LT(air.overCloudsM, 2500.0f);
+  const double topM = static_cast<double>(air.overCloudsM);
+  const glm::vec3 atTop = airAbout(over, topM).overClouds;
+  EXPECT_EQ(airAbout(over, 2.0).overClouds, atTop);
+  EXPECT_NEAR(airAbout(over, topM + 1.0).overClouds.y, atTop.y, 1e-3f * atTop.y);
+  // As much comes down as the air sends back, but for what ozone takes.
+  const sky::Atmosphere& atmosphere = *over.atmosphere;
+  const double altitudeM = atmosphere.groundAltitudeM() + topM;
+  double down = 0.0;
+  constexpr int kSteps = 200;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    down += 2.0 * mu / kSteps *
+            static_cast<double>(atTop.y * (1.0f - atmosphere.transmittanceToSpace(altitudeM, mu).y));
+  }
+  const double sent = static_cast<double>((atmosphere.sphericalAlbedo(altitudeM) *
+                                           (over.ambient.airSources.upward - over.ambient.airSources.bare))
+                                              .y);
+  EXPECT_NEAR(down, sent, 0.15 * sent);
+}
+
 // Clouds that make the air darker make no side of it brighter: what they add from one side is part of what
 // they add in the mean.
 TEST(AmbientLight, OfCloudsInSunlitAirHasNoSideWithoutAMean) {
