@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/image.h"
 #include "welkin/field/ellipsoid.h"
 

@@ -21,6 +21,7 @@
 #include <optional>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/image.h"
 #include "welkin/core/params.h"
 #include "welkin/field/metaballs.h"

@@ -103,6 +103,8 @@ std::vector<Candidate> candidates() {
   return list;
 }
 
+constexpr int kLeastVersion = 33;  // major * 10 + minor
+
 struct Version {
   int major, minor;
 };
@@ -270,6 +272,28 @@ std::vector<std::string> Context::takeErrors() {
   for (GLenum error = glGetError(); error != GL_NO_ERROR; error = glGetError())
     errors.push_back("glGetError " + std::to_string(error));
   return errors;
+}
+
+void requireCurrent() {
+  const auto current = [] {
+    static const bool egl = opens("libEGL.so.1");
+    if (egl && eglGetCurrentContext() != EGL_NO_CONTEXT) return true;
+    // Those of GLX are there where the application has loaded it.
+    using GetCurrent = void* (*)();
+    for (const char* name : {"libGLX.so.0", "libGL.so.1"})
+      if (void* library = dlopen(name, RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD)) {
+        const auto get = reinterpret_cast<GetCurrent>(dlsym(library, "glXGetCurrentContext"));
+        const bool any = get && get();
+        dlclose(library);
+        if (any) return true;
+      }
+    return false;
+  };
+  if (!current()) throw GpuError("no OpenGL context is current in this thread");
+  if (epoxy_is_desktop_gl() && epoxy_gl_version() >= kLeastVersion) return;
+  const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  throw GpuError("the current context is " + std::string(version ? version : "lost") +
+                 "; expected OpenGL 3.3 or later");
 }
 
 struct CurrentGuard::Kept {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "welkin/core/error.h"
+
 namespace welkin::gpu {
 
 enum class Api {
@@ -55,6 +57,10 @@ class Context {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Throws GpuError unless a context of desktop OpenGL 3.3 or more is current in the calling thread, of EGL or
+// GLX: libepoxy would end the process.
+void requireCurrent();
 
 // Whichever context was current in the calling thread when it was made, somebody else's or none, is so again
 // when it goes, and the bound API too.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "welkin/gpu/context.h"
 #include "welkin/gpu/gl_format.h"
 
 namespace welkin::gpu {
@@ -60,7 +61,7 @@ void enableOf(GLenum name, GLuint index, bool on) {
 }  // namespace
 
 StateGuard::StateGuard()
-    : version_(epoxy_gl_version()),
+    : version_((requireCurrent(), epoxy_gl_version())),
       hasClipControl_(version_ >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control")),
       drawBuffers_(std::min(integer(GL_MAX_DRAW_BUFFERS), kDrawBuffers)),
       viewports_(version_ >= kViewportsSince ? std::min(integer(GL_MAX_VIEWPORTS), kViewports) : 1),

@@ -18,7 +18,7 @@ class StateGuard {
   // promises a stage no more than 16; what a program may have on a device, Program says.
   static constexpr int kUnits = 32;
 
-  StateGuard();
+  StateGuard();  // throws as requireCurrent()
   ~StateGuard();
   StateGuard(const StateGuard&) = delete;
   StateGuard& operator=(const StateGuard&) = delete;

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/io/mipmaps.h"
 #include "welkin/io/texel_writer.h"
 #include "welkin/io/texels.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "welkin/core/error.h"
 #include "welkin/core/image.h"
 #include "welkin/io/texels.h"
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "welkin/core/error.h"
 #include "welkin/core/image.h"
 
 namespace welkin::io {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "welkin/core/error.h"
 #include "welkin/core/image.h"
 
 namespace welkin::io {

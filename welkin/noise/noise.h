@@ -19,6 +19,7 @@
 #include <memory>
 #include <span>
 
+#include "welkin/core/error.h"
 #include "welkin/noise/params.h"
 
 namespace welkin::noise {

@@ -43,6 +43,11 @@ SkyFilm::SkyFilm(int width, int height)
     : width_(width), height_(height), sums_(static_cast<std::size_t>(width) * height * kSums) {}
 
 void SkyFilm::addPaths(const SkyTracer& tracer, std::int64_t count, const std::function<void()>& pause) {
+  if (tracer.width() != width_ || tracer.height() != height_)
+    throw ParameterError("the tracer's picture is " + std::to_string(tracer.width()) + "x" +
+                         std::to_string(tracer.height()) + "; expected the film's size, " +
+                         std::to_string(width_) + "x" + std::to_string(height_));
+  if (count < 1) throw ParameterError(std::to_string(count) + " paths a pixel; expected at least 1");
   const std::size_t pixels = static_cast<std::size_t>(width_) * height_, n = static_cast<std::size_t>(count);
   std::vector<SkySample> samples(pixels * n);
   const std::size_t share = pixels * n / (kShares * static_cast<std::size_t>(threadCount()));

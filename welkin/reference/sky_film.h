@@ -25,6 +25,7 @@ class SkyFilm {
 
   // So many more paths for every pixel, by parallelFor; the same on any number of threads, and by however
   // many calls. pause: called now and then from several threads; where it throws, the film is as it was.
+  // Throws ParameterError for a tracer of another size and for less than one path.
   void addPaths(const SkyTracer& tracer, std::int64_t count, const std::function<void()>& pause = {});
 
   Image<float> luminance() const;  // RGB, cd/m2

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "welkin/core/error.h"
 #include "welkin/core/parallel.h"
 #include "welkin/core/random.h"
 #include "welkin/core/units.h"
@@ -280,7 +280,9 @@ double excess(const SlabResult& r, double noise) {
 
 SlabResult traceSlab(const scene::Slab& slab, const SlabSettings& settings,
                      const std::function<void(const SlabResult&, double)>& progress) {
-  assert(!slab.empty() && (settings.maxPaths > 0 || settings.noise > 0.0));
+  if (slab.empty()) throw ParameterError("the slab is empty; expected an optical depth or columns");
+  if (settings.maxPaths == 0 && !(settings.noise > 0.0))
+    throw ParameterError("nothing ends the paths; expected a noise above 0 or a number of paths");
   const SlabTracer tracer(slab);
   const std::size_t columns = tracer.columns();
   const double pathsOfColumn = static_cast<double>(kLatticePoints) / static_cast<double>(columns);

@@ -45,6 +45,7 @@ struct SlabSettings {
   double noise = 1e-3;
 };
 
+// Throws ParameterError for an empty slab, and where nothing would end the paths.
 // progress: called between rounds with what there is and the share of the work that is done; may throw.
 SlabResult traceSlab(const scene::Slab& slab, const SlabSettings& settings,
                      const std::function<void(const SlabResult&, double)>& progress = {});

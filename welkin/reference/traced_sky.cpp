@@ -116,7 +116,8 @@ glm::dvec3 TracedSky::groundAlbedo(const glm::dvec3& p) const {
   const auto q = shared::cloudPosition(glm::vec3(p), static_cast<float>(earth.radiusM()));
   const shared::sampler2D placement{&state.clouds->noise().placement, shared::Wrap::kRepeat,
                                     shared::Wrap::kRepeat};
-  return glm::dvec3(shared::groundAlbedoAt(glm::vec3(scene::groundAlbedo(state.scene, state.weather)), placement, glm::vec2(q)));
+  return glm::dvec3(shared::groundAlbedoAt(glm::vec3(scene::groundAlbedo(state.scene, state.weather)),
+                                           placement, glm::vec2(q)));
 }
 
 glm::dvec3 TracedSky::above(const Ray& ray) const {

@@ -13,6 +13,8 @@
 // the sky with this too.
 #pragma once
 
+#include "welkin/core/error.h"
+
 namespace welkin::render {
 
 struct AirVolumeOptions {

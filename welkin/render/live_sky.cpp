@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "welkin/core/error.h"
 #include "welkin/gpu/state_guard.h"
 #include "welkin/render/air_volume_pass.h"
 #include "welkin/render/cloud_textures.h"
@@ -102,6 +103,9 @@ struct LiveSky::Impl {
 
   Backdrops& backdrops() { return allBackdrops[others.number()]; }
   gpu::Program& boxBackdrop() { return boxBackdrops[others.number()]; }
+  void requireSky() const {
+    if (!state) throw ParameterError("there is no sky yet; expected update() before this");
+  }
   void change(const scene::SkyState& next);
   void changeScene(const scene::SkyState& next, const Others& there);
   void refresh();
@@ -134,6 +138,7 @@ LiveSky::LiveSky() {
 LiveSky::~LiveSky() = default;
 
 const scene::SkyState& LiveSky::state() const {
+  impl_->requireSky();
   return *impl_->state;
 }
 
@@ -366,8 +371,9 @@ void LiveSky::Impl::drawSheets(const shading::View& view, const shading::ViewPar
 }
 
 void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
-  if (target.area.width < 1 || target.area.height < 1) return;
   Impl& m = *impl_;
+  m.requireSky();
+  if (target.area.width < 1 || target.area.height < 1) return;
   const gpu::StateGuard guard;
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);
   m.lookFrom(parts, options.view);
@@ -392,6 +398,7 @@ void LiveSky::draw(const shading::View& view, const gpu::Target& target, const L
 const AirVolume& LiveSky::airVolume(const shading::View& view, const AirVolumeOptions& options) {
   checkAirVolume(options);
   Impl& m = *impl_;
+  m.requireSky();
   const gpu::StateGuard guard;
   if (!m.volumesKnow) {
     if (!m.volumes) m.volumes.emplace();

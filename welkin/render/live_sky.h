@@ -46,7 +46,8 @@ struct LiveOptions {
 
 class LiveSky {
  public:
-  // Needs OpenGL 3.3. Throws GpuError.
+  // Needs OpenGL 3.3. Throws GpuError, as update(), draw() and airVolume() do, where no context is current
+  // in the calling thread, or one of another kind.
   LiveSky();
   ~LiveSky();
   LiveSky(const LiveSky&) = delete;
@@ -54,7 +55,8 @@ class LiveSky {
 
   // The sky `secondsAfter` the scene's time. Its layers are drawn as their techniques say (auto: as
   // volumes). Throws as buildSky does, and for files of a sky box: the sky is as it was then. After a
-  // GpuError there is none until the next update().
+  // GpuError there is none until the next update(), as there is none before the first: draw(), airVolume()
+  // and state() throw ParameterError then.
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);

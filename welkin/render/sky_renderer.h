@@ -45,7 +45,7 @@ class SkyRenderer {
   SkyRenderer(const SkyRenderer&) = delete;
   SkyRenderer& operator=(const SkyRenderer&) = delete;
 
-  // Draws with the camera and output settings of state.scene.
+  // Draws with the camera and output settings of state.scene, towards state.headingDeg.
   Picture draw(const scene::SkyState& state, const Progress& progress = {});
 
   std::string deviceName() const;

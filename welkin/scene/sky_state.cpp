@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "welkin/core/error.h"
+#include "welkin/core/param_range.h"
 #include "welkin/core/units.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/scene/cloud_shapes.h"
@@ -144,6 +146,17 @@ glm::dvec3 groundAlbedo(const Scene& scene, const weather::Weather& weather) {
 
 namespace {
 
+// Of the years that the ephemeris knows.
+void requireInstant(const Scene& scene, double secondsAfter) {
+  constexpr double kFarS = 200.0 * 366.0 * 86400.0;
+  if (std::abs(secondsAfter) <= kFarS) {
+    const int year = addSeconds(scene.time, secondsAfter).year;
+    if (year >= 1900 && year <= 2100) return;
+  }
+  throw ParameterError("the instant is " + numberText(secondsAfter) + " s after " +
+                       formatUtcTime(scene.time) + "; expected one of the years 1900 to 2100");
+}
+
 // What the report says of it, where the scene leaves that to it.
 sky::AtmosphereParams atmosphereOf(const Scene& scene, const weather::Weather& weather) {
   sky::AtmosphereParams params = scene.atmosphere;
@@ -174,6 +187,10 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
     moveSky(s, secondsAfter);
     return s;
   }
+  validate(scene);
+  requireInstant(scene, secondsAfter);
+  if (!scene.slab.empty())
+    throw ParameterError("a scene with [slab] has no sky; expected traceSlab() of reference/slab_tracer.h");
   SkyState s;
   s.scene = scene;
   s.secondsAfter = secondsAfter;
@@ -205,6 +222,7 @@ SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previ
 }
 
 void moveSky(SkyState& s, double secondsAfter) {
+  requireInstant(s.scene, secondsAfter);
   s.secondsAfter = secondsAfter;
   settleCover(s);
   moveClouds(s.scene, s.weather, s.calibration, secondsAfter, *s.clouds);

@@ -71,7 +71,9 @@ struct SkyState {
   std::vector<LayerCover> sheetCover;  // a sheet by hand each, in the scene's order
   LayerCover skyCover;                 // the whole sky
   std::vector<std::string> warnings;   // files that could not be used, covers that cannot be met
-  double headingDeg = 0.0;             // the camera's, with "absent" resolved, the same at all instants
+  // The direction that is drawn: the camera's, with "absent" resolved, the same at all instants. To look
+  // elsewhere in the same sky, change this and not the scene's.
+  double headingDeg = 0.0;
 };
 
 // The weather of a scene: its report decoded, or its layers by hand. Throws ParseError for a report that
@@ -85,10 +87,13 @@ glm::dvec3 groundAlbedo(const Scene& scene, const weather::Weather& weather);
 // key instants that both need, are taken from `previous` when given, which must come from the same scene; the
 // sky is the same either way. The delivered cover is measured only without `previous`, as it costs more than
 // the rest: a sequence carries that of its first picture.
+// Throws ParameterError where validate(scene) does, for scenes with a slab and for instants of other years
+// than 1900 to 2100; ParseError for a report that cannot be read. Files that cannot be used are warnings.
 SkyState buildSky(const Scene& scene, double secondsAfter, const SkyState* previous = nullptr);
 
 // The same in the place of the sky of the same scene at another instant. Allocates nothing, unless cover is
 // to be calibrated at a key instant that is neither there nor in coverKeyAhead: some hundredths of a second.
+// Throws ParameterError for such instants.
 void moveSky(SkyState& state, double secondsAfter);
 
 // A key instant in portions, for frame loops: the same key whatever the portions.

@@ -50,6 +50,30 @@ Volume<float> noiseVolume(int nx, int ny, int nz, int channels) {
   return volume;
 }
 
+// libepoxy would end the process.
+TEST(Current, ErrorsSayWhatIsMissing) {
+  const auto problem = [] {
+    try {
+      requireCurrent();
+      return std::string();
+    } catch (const GpuError& e) {
+      return std::string(e.what());
+    }
+  };
+  {
+    const Context gl{{}};
+    EXPECT_EQ(problem(), "");
+  }
+  EXPECT_EQ(problem(), "no OpenGL context is current in this thread");
+  try {
+    const Context es{{.api = Api::kGles}};
+    EXPECT_NE(problem().find("OpenGL ES"), std::string::npos) << problem();
+    EXPECT_NE(problem().find("expected OpenGL 3.3 or later"), std::string::npos) << problem();
+  } catch (const GpuError& e) {
+    GTEST_SKIP() << e.what();
+  }
+}
+
 TEST_F(Gpu, ContextTellsAboutItself) {
   EXPECT_FALSE(context.deviceName().empty());
   EXPECT_GE(context.majorVersion() * 10 + context.minorVersion(), 33);

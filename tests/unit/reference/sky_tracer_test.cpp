@@ -311,6 +311,8 @@ TEST(SkyFilm, GoesOnAsIfNothingHadHappened) {
   EXPECT_EQ(part.samples(), 2);
   for (int i = 0; i < 3; ++i) part.addPaths(tracer, 1);
   expectSame(whole, part);
+  EXPECT_THROW(part.addPaths(tracer, -1), ParameterError);
+  EXPECT_THROW(SkyFilm(3, 2).addPaths(tracer, 1), ParameterError);
   SkyFilm::State damaged = whole.state();
   damaged.planes.erase("sum.red");
   EXPECT_THROW(SkyFilm::fromState(damaged), ParameterError);

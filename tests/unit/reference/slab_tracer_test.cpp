@@ -8,6 +8,7 @@
 #include <string>
 
 #include "welkin/core/parallel.h"
+#include "welkin/core/error.h"
 #include "welkin/core/units.h"
 
 namespace welkin::reference {
@@ -60,6 +61,13 @@ void expectConservative(const SlabResult& r, const std::string& what) {
   const double all = r.total.reflectance.value + r.total.transmittance.value;
   EXPECT_NEAR(all, 1.0, 0.002) << what;  // but for roulette, exactly
   EXPECT_EQ(r.total.absorptance.value, 0.0) << what;
+}
+
+TEST(SlabTracer, WhatCannotBeTracedIsSaid) {
+  EXPECT_THROW(traceSlab(scene::Slab{}, {}), ParameterError);
+  scene::Slab slab;
+  slab.opticalDepth = 1.0;
+  EXPECT_THROW(traceSlab(slab, {.maxPaths = 0, .noise = 0.0}), ParameterError);
 }
 
 TEST(SlabTracer, ConservativeSlabsInTheSun) {

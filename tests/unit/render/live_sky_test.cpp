@@ -140,6 +140,30 @@ TEST_F(LiveSkyTest, AnEngineFindsItsStateAgain) {
   EXPECT_EQ(engine.state(), before);
 }
 
+TEST_F(LiveSkyTest, NothingIsDrawnBeforeThereIsASky) {
+  LiveSky sky;
+  const shading::View view = shading::viewOf(scene::buildSky(thinScene(), 0.0));
+  const auto expectNoSky = [&] {
+    EXPECT_THROW(sky.draw(view, target), ParameterError);
+    EXPECT_THROW(sky.airVolume(view), ParameterError);
+    EXPECT_THROW(sky.state(), ParameterError);
+  };
+  expectNoSky();
+  scene::Scene bad = thinScene();
+  bad.metar = "EGLL 211200Z FEW0X2";
+  EXPECT_THROW(sky.update(bad, 0.0), ParseError);
+  expectNoSky();
+  bad = thinScene();
+  bad.place.latitudeDeg = 123.0;
+  EXPECT_THROW(sky.update(bad, 0.0), ParameterError);
+  EXPECT_THROW(sky.update(thinScene(), std::nan("")), ParameterError);
+  sky.update(thinScene(), 0.0);
+  const Image<float> picture = drawn(sky);
+  // A mistake leaves the sky that was there.
+  EXPECT_THROW(sky.update(bad, 0.0), ParameterError);
+  EXPECT_EQ(drawn(sky).data, picture.data);
+}
+
 TEST_F(LiveSkyTest, DrawsAllocateNothing) {
   LiveSky sky;
   const sky::Body sun = scene::lightsAt(thinScene(), 0.0).ephemeris.sun;

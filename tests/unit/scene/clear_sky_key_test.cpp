@@ -2,6 +2,10 @@
 // The clear sky's light between key instants.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <string>
+
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::scene {
@@ -21,6 +25,33 @@ TEST(ClearSkyKey, LightBetweenKeysIsThatOfTheInstant) {
           << time << " " << t;
     }
   }
+}
+
+// Scenes that code has made are checked as files are.
+TEST(SkyState, NonsenseIsNoSky) {
+  const auto problem = [](const std::function<void(Scene&)>& change, double at = 0.0) -> std::string {
+    Scene s;
+    s.layers.push_back(weather::typicalLayer(weather::Genus::kCumulus, 47.0));
+    change(s);
+    try {
+      buildSky(s, at);
+    } catch (const ParameterError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const double nan = std::nan("");
+  EXPECT_EQ(problem([](Scene&) {}), "");
+  EXPECT_NE(problem([&](Scene& s) { s.place.latitudeDeg = nan; }).find("latitude_deg"), std::string::npos);
+  EXPECT_NE(problem([](Scene& s) { s.place.latitudeDeg = 123.0; }).find("-90 to 90"), std::string::npos);
+  EXPECT_NE(problem([](Scene& s) { s.time.month = 13; }).find("calendar"), std::string::npos);
+  EXPECT_NE(problem([](Scene& s) { s.atmosphere.ozoneDu = -100.0; }).find("ozone_du"), std::string::npos);
+  EXPECT_NE(problem([](Scene& s) { s.layers[0].oktas = 12.0; }), "");
+  EXPECT_NE(problem([](Scene& s) { s.slab.opticalDepth = 4.0; }).find("traceSlab"), std::string::npos);
+  for (const double at : {nan, 1e10, -1e300})
+    EXPECT_NE(problem([](Scene&) {}, at).find("the instant is"), std::string::npos) << at;
+  SkyState sky = buildSky(Scene{}, 0.0);
+  EXPECT_THROW(moveSky(sky, nan), ParameterError);
 }
 
 TEST(ClearSkyKey, ASequenceHasTheStillsLight) {
