@@ -31,6 +31,7 @@ uniform float uStepShare;         // step as a share of the distance
 uniform float uStepLong;          // the longest step through clear air, in those of the above
 uniform int uMaxSteps;
 uniform int uSunSamples;          // density samples towards the sun before the light volume takes over (a loop of none costs as much as of one)
+uniform int uSurfaceHalvings;     // of the step in which a surface was met
 #ifdef WELKIN_SHEETS
 WELKIN_FIXED uniform vec4 uPieces[WELKIN_PIECES];  // base and top of bands cut at sheets, m
 uniform int uHits;                // WELKIN_HITS
@@ -50,8 +51,6 @@ WELKIN_FIXED uniform vec4 uBandSky[kMaxLayers];  // for each band: of the light 
 #ifndef WELKIN_SHAFTS
 #define WELKIN_SHAFTS(band) false
 #endif
-
-const int kSurfaceHalvings = 3;   // of the step in which a surface was met
 
 // What is left when a march may end: less where sun or moon shine through, which are many times as bright as clouds.
 #ifdef WELKIN_SEGMENTS
@@ -247,10 +246,11 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
       } else if (fine <= 0) {
         // Out of clear air into a cloud: back, and on with short steps from a place of chance. (Bounded steps end at the same depth
         // under the surface whatever place they began at, and would draw lines of equal depth on it.) The places are those that short
-        // steps all the way would come to, so that sub-frames whose dithers lie evenly sample the cloud evenly.
+        // steps all the way would come to, so that sub-frames whose dithers lie evenly sample the cloud evenly. That way begins with the
+        // stretch: counted from the eye, phases would drift across a layer's even base and draw rings with the noise of pixels.
         fine = 2 + int((t - lastClear) / shortStep);
         bool evenSteps = shortStep > 1.001 * uStepShare * t;  // or they grow with the distance
-        float steps = evenSteps ? (lastClear - stretch.x) / shortStep : log(max(lastClear, 1.0)) / log(1.0 + uStepShare);
+        float steps = evenSteps ? (lastClear - stretch.x) / shortStep : log(max(lastClear, 1.0) / max(stretch.x, 1.0)) / log(1.0 + uStepShare);
         t = lastClear + shortStep * fract(dither.x - steps);
         entering = true;
       } else {
@@ -265,7 +265,7 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
       // The surface of dense cloud lies in the last step. Thin cloud is left where it was met: a place of chance in it, which stands for a step
       // of it.
       if (!WELKIN_SHAFTS(band) && skinStep < shortStep) {
-        for (int i = 0; i < kSurfaceHalvings; ++i) {
+        for (int i = 0; i < uSurfaceHalvings; ++i) {
           float middle = 0.5 * (lastClear + t);
           CloudSurfaces surfaces;
           vec3 pm = vec3(0.0, 0.0, uEyeM) + dir * middle;

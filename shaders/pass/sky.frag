@@ -14,7 +14,9 @@
 #include "lib/light_around.glsl"
 #include "lib/cloud_light_fit.glsl"
 #include "lib/cloud_scattering.glsl"
+#ifndef WELKIN_CASCADES_BLENDED
 #define WELKIN_CASCADES_DITHERED
+#endif
 #include "lib/light_volume.glsl"
 #include "lib/fluence.glsl"
 #include "lib/ground_light.glsl"
@@ -64,7 +66,9 @@ void main() {
   }
   Dithers dithers = dithersOf(floor(px), uJitterStep);
   airDither = dithers.steps.x;
+#ifdef WELKIN_CASCADES_DITHERED
   cascadeDither = dithers.cascade;
+#endif
   float groundM = groundDistance(dir);
   CloudRay ray = marchClouds(dir, groundM, pixelRad, dithers.steps);
 #ifdef WELKIN_TRANSMITTANCE

@@ -230,6 +230,8 @@ void LiveVolumes::setView(gpu::Program& p, const scene::SkyState& state, const s
   p.set("uEnuFromCamera", parts.enuFromCamera);
   p.set("uRayScale", parts.rayScale);
   p.set("uPixelRad", parts.pixelRad);
+  setUniforms(p, shading::marchUniforms(
+                     shading::marchSettings(state.scene.output.quality, glm::vec2(parts.rayScale))));
 }
 
 void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,

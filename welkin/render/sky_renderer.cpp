@@ -57,6 +57,14 @@ float pixelRadOf(const scene::SkyState& state) {
   return scene::middlePixelRad(scene::projectorOf(state));
 }
 
+shading::MarchSettings marchSettingsOf(const scene::SkyState& state) {
+  const scene::Scene& s = state.scene;
+  if (s.camera.projection != scene::Projection::kPerspective) return shading::marchSettings(s.output.quality);
+  const scene::Projector projector = scene::projectorOf(state);
+  return shading::marchSettings(
+      s.output.quality, projector.halfWidthTan * glm::vec2(1.0f, projector.sizePx.y / projector.sizePx.x));
+}
+
 }  // namespace
 
 struct SkyRenderer::Impl {
@@ -140,10 +148,12 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   shading::ShaderDefines defines =
       sheets.empty() ? shading::marchDefines(layout, eyeM) : sheets.defines(layout, eyeM);
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
+  if (settings.cascadesBlended) defines.emplace_back("WELKIN_CASCADES_BLENDED", "1");
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
   shading::addPhaseDefines(state, defines);
-  if (SkyTextures::isAnythingBeyond(state, pixelRadOf(state), eyeM)) defines.emplace_back("WELKIN_BEYOND", "1");
+  if (SkyTextures::isAnythingBeyond(state, pixelRadOf(state), eyeM))
+    defines.emplace_back("WELKIN_BEYOND", "1");
   if (cloudLight == CloudLight::kSingle) defines.emplace_back("WELKIN_SINGLE_SCATTERING", "1");
   if (cloudLight == CloudLight::kOctaves) defines.emplace_back("WELKIN_OCTAVES_OF_SCATTERING", "1");
   gpu::Program& p = sky.with(defines);
@@ -190,7 +200,7 @@ Picture SkyRenderer::Impl::draw(const scene::SkyState& state, const Progress& pr
       cloudLight == CloudLight::kFull ? LightVolumePass::Spread::kYes : LightVolumePass::Spread::kNo);
   done("light volume");
 
-  shading::MarchSettings settings = shading::marchSettings(state.scene.output.quality);
+  shading::MarchSettings settings = marchSettingsOf(state);
   // Without volumes there is no grain for the resolve to take out.
   if (layout.bands.empty()) settings.noise = 1e-4f;
   gpu::Program& p = programFor(state, layout, settings, false);

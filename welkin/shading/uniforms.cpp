@@ -235,12 +235,24 @@ MarchSettings marchSettings(scene::Quality quality) {
           .sunSamples = 5};
 }
 
+MarchSettings marchSettings(scene::Quality quality, glm::vec2 halfTan) {
+  constexpr float kWideTan = 0.5774f;  // of 30 degrees
+  constexpr float kFinest = 0.1f;
+  MarchSettings settings = marchSettings(quality);
+  const float share =
+      std::clamp(std::max(std::abs(halfTan.x), std::abs(halfTan.y)) / kWideTan, kFinest, 1.0f);
+  settings.stepShare *= share;
+  settings.stepLong /= share;
+  settings.maxSteps = static_cast<int>(static_cast<float>(settings.maxSteps) / share);
+  settings.surfaceHalvings += static_cast<int>(std::ceil(-std::log2(share)));
+  settings.cascadesBlended = share < 1.0f;
+  return settings;
+}
+
 Uniforms marchUniforms(const MarchSettings& settings) {
-  return {{"uStepNearM", settings.stepNearM},
-          {"uStepShare", settings.stepShare},
-          {"uStepLong", settings.stepLong},
-          {"uMaxSteps", settings.maxSteps},
-          {"uSunSamples", settings.sunSamples}};
+  return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
+          {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
+          {"uSunSamples", settings.sunSamples}, {"uSurfaceHalvings", settings.surfaceHalvings}};
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {

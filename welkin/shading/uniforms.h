@@ -54,9 +54,14 @@ struct MarchSettings {
   float stepShare = 0.0f;  // step in cloud as a share of the distance
   float stepLong = 30.0f;  // the longest step through clear air, in steps in cloud: the same of every quality
   int maxSteps = 0;
-  int sunSamples = 0;  // density samples towards the sun before the light volume takes over
+  int sunSamples = 0;            // density samples towards the sun before the light volume takes over
+  int surfaceHalvings = 3;       // of the step in which a surface was met
+  bool cascadesBlended = false;  // of the light volume; or each pixel has one of two, by its noise
 };
 MarchSettings marchSettings(scene::Quality quality);
+// Of a perspective picture, by the tangents of half its angles across and up: narrow ones see clouds from so
+// far that those steps would be many pixels. From 60 degrees on they are the same.
+MarchSettings marchSettings(scene::Quality quality, glm::vec2 halfTan);
 Uniforms marchUniforms(const MarchSettings& settings);
 
 // lib/projection.glsl.

@@ -213,6 +213,24 @@ TEST(Uniforms, HalosAreCompiledInForIceAlone) {
   EXPECT_EQ(halos(scene::buildSky(clearScene(40.0), 0.0)), 0);
 }
 
+TEST(Uniforms, NarrowViewsTakeFinerSteps) {
+  for (const scene::Quality quality : {scene::Quality::kLow, scene::Quality::kUltra}) {
+    const MarchSettings any = marchSettings(quality), wide = marchSettings(quality, {0.3f, 0.58f}),
+                        narrow = marchSettings(quality, {0.2f, 0.1f}),
+                        narrowest = marchSettings(quality, {0.01f, 0.01f});
+    EXPECT_EQ(marchUniforms(any), marchUniforms(wide));
+    EXPECT_FALSE(wide.cascadesBlended);
+    EXPECT_TRUE(narrow.cascadesBlended);
+    EXPECT_LT(narrow.stepShare, any.stepShare);
+    EXPECT_LT(narrowest.stepShare, narrow.stepShare);
+    EXPECT_GT(narrowest.stepShare, 0.05f * any.stepShare);
+    EXPECT_GT(narrow.surfaceHalvings, any.surfaceHalvings);
+    // As far as before.
+    EXPECT_NEAR(narrow.stepShare * static_cast<float>(narrow.maxSteps),
+                any.stepShare * static_cast<float>(any.maxSteps), 0.01f);
+  }
+}
+
 TEST(Uniforms, BetterQualityTakesFinerSteps) {
   const scene::Quality order[] = {scene::Quality::kLow, scene::Quality::kMedium, scene::Quality::kHigh,
                                   scene::Quality::kUltra};
