@@ -262,11 +262,13 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
     fine = max(fine, 2);
     if (entering) {
       skinStep = 0.5 / point.extinction;
+      fromStart = lastClear == stretch.x;
       // The surface of dense cloud lies in the last step. Thin cloud is left where it was met: a place of chance in it, which stands for a step
-      // of it.
+      // of it. From one to the other more and more of the step is searched, or there would be a line between them.
       if (!WELKIN_SHAFTS(band) && skinStep < shortStep) {
+        float clear = mix(t, lastClear, smoothstep(1.0, 2.0, shortStep / skinStep));
         for (int i = 0; i < uSurfaceHalvings; ++i) {
-          float middle = 0.5 * (lastClear + t);
+          float middle = 0.5 * (clear + t);
           CloudSurfaces surfaces;
           vec3 pm = vec3(0.0, 0.0, uEyeM) + dir * middle;
           vec3 qm = cloudPosition(pm, uEarthRadiusM);
@@ -278,11 +280,11 @@ void marchBand(int band, vec2 stretch, vec3 dir, float pixelRad, FirstPhases pha
             q = qm;
             point = there;
           } else {
-            lastClear = middle;
+            clear = middle;
+            fromStart = false;
           }
         }
       }
-      fromStart = lastClear == stretch.x;
       if (fromStart) t = stretch.x;
       entering = false;
     }

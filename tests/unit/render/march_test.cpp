@@ -33,6 +33,29 @@ scene::Scene veil(Genus genus, double pitchDeg, int width, int height) {
   return sized(looking(s, 258.0, pitchDeg), width, height);
 }
 
+// The largest jump of rows' mean luminance against the trends above and beneath it, relative.
+double largestLine(const Image<float>& picture, int firstRow, int lastRow) {
+  std::vector<double> rows;
+  for (int y = firstRow; y < lastRow; ++y) {
+    double sum = 0.0;
+    const int middle = picture.width / 2, half = picture.width / 16;
+    for (int x = middle - half; x < middle + half; ++x) sum += std::log(luminanceOf(pixel(picture, x, y)));
+    rows.push_back(sum / (2.0 * half));
+  }
+  double most = 0.0;
+  for (std::size_t i = 8; i + 10 < rows.size(); ++i) {
+    const double before = rows[i] - rows[i - 8], after = rows[i + 10] - rows[i + 2];
+    most = std::max(most, std::abs(rows[i + 2] - rows[i] - (before + after) / 8.0));
+  }
+  return most;
+}
+
+TEST_F(March, NoLineWhereSurfacesAreSought) {
+  const double line = largestLine(drawn(veil(Genus::kCirrocumulus, 14.0, 480, 270)), 60, 150);
+  RecordProperty("jump", std::to_string(line));
+  EXPECT_LT(line, 0.0045);
+}
+
 // The steps' noise met the phases of steps that were counted from the eye, in four places around the zenith.
 TEST_F(March, StepsDrawNoRings) {
   constexpr int kSide = 320, kApart = 3;
