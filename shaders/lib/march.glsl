@@ -380,6 +380,23 @@ FirstPhases cloudPhases(vec3 dir, float cosSun) {
   return phases;
 }
 
+// Rays that were not marched to their ends have nothing left; those that were just not ended have as much as opaqueTowards() says. Between
+// them and rays of which much is left it fades, and there is no line.
+void fadeToOpaque(vec3 dir, inout MarchState state) {
+  const float kFadeFrom = 4.0;  // in what is left when a march ends
+  float opaque = opaqueTowards(dir);
+  if (state.steps == 0 || state.transmittance <= 0.0 || state.transmittance >= kFadeFrom * opaque) return;
+  float left = max(state.transmittance - opaque, 0.0) * (kFadeFrom / (kFadeFrom - 1.0));
+  float more = (1.0 - left) / (1.0 - state.transmittance);
+  state.luminance *= more;
+#ifdef WELKIN_SURFACES
+  state.sheets *= more;
+#endif
+  state.weightedDepth *= more;
+  state.weight *= more;
+  state.transmittance = left;
+}
+
 CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   float cosSun = dot(dir, uKeyDirection);
   FirstPhases phases = cloudPhases(dir, cosSun);
@@ -428,6 +445,7 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   WELKIN_EACH_DOWN(WELKIN_MARCH_DOWN, WELKIN_ADD_SHEET)
   WELKIN_EACH_UP(WELKIN_MARCH_UP, WELKIN_ADD_SHEET)
   WELKIN_MEET_SPLATS(endM)
+  fadeToOpaque(dir, state);
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
                   state.sheets);
 #else
@@ -445,6 +463,9 @@ CloudRay marchClouds(vec3 dir, float endM, float pixelRad, vec2 dither) {
   WELKIN_EACH_BAND_UP(WELKIN_MARCH_UP)
 #ifdef WELKIN_SPLATS
   meetSplats(endM, state);
+#endif
+  fadeToOpaque(dir, state);
+#ifdef WELKIN_SPLATS
   return CloudRay(state.luminance, state.transmittance, state.weight > 0.0 ? state.weightedDepth / state.weight : 0.0, state.weight,
                   state.sheets);
 #else

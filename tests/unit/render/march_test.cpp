@@ -56,6 +56,12 @@ TEST_F(March, NoLineWhereSurfacesAreSought) {
   EXPECT_LT(line, 0.0045);
 }
 
+TEST_F(March, NoLineWhereCloudsBecomeOpaque) {
+  const double line = largestLine(drawn(veil(Genus::kCirrostratus, 14.0, 480, 270)), 80, 180);
+  RecordProperty("jump", std::to_string(line));
+  EXPECT_LT(line, 0.003);
+}
+
 // The steps' noise met the phases of steps that were counted from the eye, in four places around the zenith.
 TEST_F(March, StepsDrawNoRings) {
   constexpr int kSide = 320, kApart = 3;
