@@ -25,7 +25,7 @@ class SceneFiles(ProgramTest):
         self.refuse("[place]\nlatitude_deg = 95\n", "2:16: latitude_deg is 95; expected -90 to 90 deg")
 
     def test_not_a_number(self):
-        self.refuse("[camera]\nfov_deg = nan\n", "2:11: fov_deg is nan; expected 1 to 170 deg")
+        self.refuse("[camera]\nfov_deg = nan\n", "2:11: fov_deg is nan; expected 0.1 to 170 deg")
 
     def test_syntax(self):
         self.refuse("seed = 1\nplace = {\n", "2:")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/testing/skies.h"
 
+#include <cmath>
 #include <memory>
 
 #include "welkin/sky/ephemeris.h"
@@ -56,7 +57,7 @@ scene::Scene sized(scene::Scene s, int width, int height) {
 }
 
 scene::Scene looking(scene::Scene s, double headingDeg, double pitchDeg, double fovDeg) {
-  s.camera.headingDeg = headingDeg;
+  s.camera.headingDeg = std::fmod(headingDeg, 360.0);
   s.camera.pitchDeg = pitchDeg;
   s.camera.fovDeg = fovDeg;
   return s;

@@ -11,8 +11,11 @@ using shading::FluenceLayout;
 constexpr int kTexels = FluenceLayout::kMostCells / 4;
 constexpr auto kHalfM = shading::LightVolumeLayout::kHalfM;
 constexpr auto kCascades = kHalfM.size();
-// Of each cascade. Wide ones have columns that are wider than their clouds; the widest begins with nothing.
+// Of each cascade. Wide ones have columns that are wider than their clouds. The widest begins with each
+// column by itself, as of a closed deck: deep decks lose little through sides, and so few steps would not
+// fill them.
 constexpr std::array<int, kCascades> kRelaxations = {16, 10, 4};
+constexpr float kApartM = 1e9f;  // a side through which nothing comes
 // What a step is, in its cascade.
 enum { kDepths, kSources, kStart, kRelax };
 constexpr int stepsOf(std::size_t cascade) {
@@ -67,7 +70,7 @@ void FluencePass::step(int index, const gpu::Texture3D& lightVolume) {
   else if (index == kStart)
     start(c);
   else if (index + 1 < stepsOf(cascade))
-    relax(c);
+    relax(c, index == kRelax && cascade + 1 == kCascades);
   else
     store(c);
 }
@@ -98,13 +101,14 @@ void FluencePass::start(int cascade) {
   triangle_.draw(start_, steps_[0].target);
 }
 
-void FluencePass::relax(int cascade) {
+void FluencePass::relax(int cascade, bool alone) {
   relaxProgram_->bind("uDepths", depths_.cells);
   relaxProgram_->bind("uSources", sources_.cells);
   relaxProgram_->bind("uBefore", steps_[last_].cells);
   relaxProgram_->set("uCells", layout_.cells);
-  relaxProgram_->set("uColumnM",
-                     2.0f * kHalfM[static_cast<std::size_t>(cascade)] / static_cast<float>(layout_.columns));
+  relaxProgram_->set("uColumnM", alone ? kApartM
+                                       : 2.0f * kHalfM[static_cast<std::size_t>(cascade)] /
+                                             static_cast<float>(layout_.columns));
   last_ = 1 - last_;
   triangle_.draw(*relaxProgram_, steps_[last_].target);
 }

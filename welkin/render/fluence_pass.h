@@ -33,7 +33,7 @@ class FluencePass {
  private:
   void cells(int cascade, bool sources, const gpu::Texture3D& lightVolume);
   void start(int cascade);
-  void relax(int cascade);
+  void relax(int cascade, bool alone);  // alone: nothing comes from other columns
   void store(int cascade);
 
   gpu::FullscreenTriangle triangle_;

@@ -230,8 +230,9 @@ void LiveVolumes::setView(gpu::Program& p, const scene::SkyState& state, const s
   p.set("uEnuFromCamera", parts.enuFromCamera);
   p.set("uRayScale", parts.rayScale);
   p.set("uPixelRad", parts.pixelRad);
-  setUniforms(p, shading::marchUniforms(
-                     shading::marchSettings(state.scene.output.quality, glm::vec2(parts.rayScale))));
+  shading::marchUniforms(shading::marchSettings(state.scene.output.quality, glm::vec2(parts.rayScale)),
+                         march_);
+  setUniforms(p, march_);
 }
 
 void LiveVolumes::setMarch(const Memory& m, const scene::SkyState& state,

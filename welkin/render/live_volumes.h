@@ -144,7 +144,7 @@ class LiveVolumes {
   shading::Uniforms order_;  // of sheets among bands
 
   // Kept for their memory.
-  shading::Uniforms layers_;
+  shading::Uniforms layers_, march_;
   std::vector<std::string> patternNames_;
   std::vector<SheetUniformNames> sheetNames_;
   std::vector<glm::vec4> shapes_, rays_, skies_, sunSteps_, bandSky_, bandMoves_;

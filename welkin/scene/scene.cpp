@@ -37,7 +37,7 @@ void describe(Camera& c, ParamVisitor& v) {
       c.headingDeg);
   v.value({"pitch_deg", "deg", "direction of view above the horizon, of a perspective picture", -90, 90},
           c.pitchDeg);
-  v.value({"fov_deg", "deg", "field of view across the width of a perspective picture", 1, 170}, c.fovDeg);
+  v.value({"fov_deg", "deg", "field of view across the width of a perspective picture", 0.1, 170}, c.fovDeg);
   v.choice(
       {"projection", "",
        "perspective; fisheye: the whole dome, zenith in the middle, heading at the bottom; equirect: all "

@@ -250,9 +250,19 @@ MarchSettings marchSettings(scene::Quality quality, glm::vec2 halfTan) {
 }
 
 Uniforms marchUniforms(const MarchSettings& settings) {
-  return {{"uStepNearM", settings.stepNearM},   {"uStepShare", settings.stepShare},
-          {"uStepLong", settings.stepLong},     {"uMaxSteps", settings.maxSteps},
-          {"uSunSamples", settings.sunSamples}, {"uSurfaceHalvings", settings.surfaceHalvings}};
+  Uniforms u;
+  marchUniforms(settings, u);
+  return u;
+}
+
+void marchUniforms(const MarchSettings& settings, Uniforms& uniforms) {
+  Refill u(uniforms);
+  u.put("", "uStepNearM", settings.stepNearM);
+  u.put("", "uStepShare", settings.stepShare);
+  u.put("", "uStepLong", settings.stepLong);
+  u.put("", "uMaxSteps", settings.maxSteps);
+  u.put("", "uSunSamples", settings.sunSamples);
+  u.put("", "uSurfaceHalvings", settings.surfaceHalvings);
 }
 
 Uniforms projectorUniforms(const scene::SkyState& state) {

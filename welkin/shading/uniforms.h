@@ -63,6 +63,8 @@ MarchSettings marchSettings(scene::Quality quality);
 // far that those steps would be many pixels. From 60 degrees on they are the same.
 MarchSettings marchSettings(scene::Quality quality, glm::vec2 halfTan);
 Uniforms marchUniforms(const MarchSettings& settings);
+// The same into a list that was filled before: allocates nothing.
+void marchUniforms(const MarchSettings& settings, Uniforms& uniforms);
 
 // lib/projection.glsl.
 Uniforms projectorUniforms(const scene::SkyState& state);

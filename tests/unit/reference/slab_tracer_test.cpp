@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "welkin/core/parallel.h"
 #include "welkin/core/error.h"
+#include "welkin/core/parallel.h"
 #include "welkin/core/units.h"
 
 namespace welkin::reference {

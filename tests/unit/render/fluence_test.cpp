@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/testing/pictures.h"
 #include "tests/testing/skies.h"
 #include "welkin/field/cloud_field.h"
 #include "welkin/gpu/context.h"
 #include "welkin/render/light_volume_pass.h"
+#include "welkin/render/sky_renderer.h"
 #include "welkin/scene/sky_state.h"
 
 namespace welkin::render {
@@ -139,6 +141,16 @@ TEST(Fluence, LeavesAsMuchAsComes) {
     EXPECT_GT(in, 0.05 * kSide * kSide);
     EXPECT_NEAR(out / in, 1.0, 0.035);
   }
+}
+
+// Columns half as wide are no other clouds.
+TEST(Fluence, AnOvercastOfDeepCloudIsAsBrightInHighQuality) {
+  scene::Scene s = looking(cloudyScene(60.0, {Genus::kCumulonimbus}, 8.0), 120.0, 20.0);
+  const auto luminanceIn = [&](scene::Quality quality) {
+    s.output.quality = quality;
+    return luminanceOf(meanOf(SkyRenderer().draw(scene::buildSky(s, 0.0)).luminance, 0, 10));
+  };
+  EXPECT_NEAR(luminanceIn(scene::Quality::kHigh) / luminanceIn(scene::Quality::kMedium), 1.0, 0.1);
 }
 
 }  // namespace

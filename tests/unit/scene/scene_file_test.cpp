@@ -172,9 +172,10 @@ TEST(SceneFile, ValuesOutOfRangeNameTheRange) {
   EXPECT_EQ(problemOf("[place]\nlatitude_deg = 95").what,
             "s.toml:2:16: latitude_deg is 95; expected -90 to 90 deg");
   EXPECT_EQ(problemOf("[output]\nwidth = 0").what, "s.toml:2:9: width is 0; expected 1 to 16384 pixels");
-  EXPECT_EQ(problemOf("[camera]\nfov_deg = nan").what, "s.toml:2:11: fov_deg is nan; expected 1 to 170 deg");
+  EXPECT_EQ(problemOf("[camera]\nfov_deg = nan").what,
+            "s.toml:2:11: fov_deg is nan; expected 0.1 to 170 deg");
   EXPECT_EQ(problemOf("[camera]\nfov_deg = -inf").what,
-            "s.toml:2:11: fov_deg is -inf; expected 1 to 170 deg");
+            "s.toml:2:11: fov_deg is -inf; expected 0.1 to 170 deg");
   EXPECT_EQ(problemOf("[ground]\nalbedo = [0.1, 1.5, 0]").what,
             "s.toml:2:16: albedo is 1.5; expected 0 to 1");
   EXPECT_EQ(problemOf("[output]\nquality = \"hihg\"").what,
