@@ -108,9 +108,16 @@ TexelSource sourceOf(const Request& r, const NoiseTexture& texture, const std::s
   return s;
 }
 
-// Curl in the plane has two channels, files have one, three or four: a third one of zeros.
-void widen(const std::vector<float>& two, std::vector<float>& three) {
-  three.assign(two.size() / 2 * 3, 0.0f);
+// Curl in the plane has two channels, files have one, three or four: a third one of zeros, as they are
+// normalised.
+float curlZero(const noise::NoiseParams& params) {
+  using noise::Normalisation;
+  const bool lifted =
+      params.normalisation == Normalisation::kThesis || params.normalisation == Normalisation::kUnitRange;
+  return lifted ? 0.5f : 0.0f;
+}
+void widen(const std::vector<float>& two, float zero, std::vector<float>& three) {
+  three.assign(two.size() / 2 * 3, zero);
   for (std::size_t i = 0; i < two.size() / 2; ++i) std::copy_n(&two[2 * i], 2, &three[3 * i]);
 }
 
@@ -175,7 +182,7 @@ int runNoise(const NoiseArgs& args) {
     const int count = std::min(texture.layersAtOnce(), texture.layers() - done);
     values.resize(texture.layerValues() * static_cast<std::size_t>(count));
     texture.fill(done, count, values);
-    if (texture.channels() == 2) widen(values, three);
+    if (texture.channels() == 2) widen(values, curlZero(request.params.noise), three);
     output.write(texture.channels() == 2 ? three : values);
   }
   throwIfInterrupted();

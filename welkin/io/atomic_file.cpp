@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <cstdio>
 #include <cstring>
@@ -46,12 +47,27 @@ void unregisterUnfinished(int& slot) {
   slot = -1;
 }
 
+// Of a path such as /proc/self/fd/1, which /dev/stdout and /dev/fd/1 link to: the number of the process's own
+// open file, whatever its name is by now. -1: of none.
+int openFileOf(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  for (const std::string& folder : {std::string("/dev/fd/"), std::string("/proc/self/fd/"),
+                                    "/proc/" + std::to_string(getpid()) + "/fd/"}) {
+    if (!text.starts_with(folder)) continue;
+    int number = -1;
+    const char* end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data() + folder.size(), end, number);
+    if (error == std::errc() && last == end) return number;
+  }
+  return -1;
+}
+
 // The file that a path means after following symbolic links, which need not exist yet, so that a rename
 // replaces the file and not the link. Where links go round it is one of them.
 std::filesystem::path followLinks(std::filesystem::path path) {
   constexpr int kMostLinks = 40;  // as many as Linux follows
   std::error_code error;
-  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, error); ++i) {
+  for (int i = 0; i < kMostLinks && openFileOf(path) < 0 && std::filesystem::is_symlink(path, error); ++i) {
     const std::filesystem::path target = std::filesystem::read_symlink(path, error);
     if (error) break;
     path = path.parent_path() / target;  // an absolute target stands alone
@@ -69,8 +85,14 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), final_(
   if (!exists && errno == ELOOP) fail(ELOOP);
   if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
   if (exists && access(final_.c_str(), W_OK) != 0) fail(errno);
-  direct_ = exists && !S_ISREG(status.st_mode);
-  if (direct_) {
+  const int opened = exists ? openFileOf(final_) : -1;
+  direct_ = exists && (opened >= 0 || !S_ISREG(status.st_mode));
+  if (opened >= 0) {
+    temporary_ = final_;
+    file_ = fcntl(opened, F_DUPFD_CLOEXEC, 0);
+    const off_t at = lseek(file_, 0, SEEK_CUR);
+    if (at > 0) origin_ = static_cast<std::uint64_t>(at);
+  } else if (direct_) {
     temporary_ = final_;
     file_ = open(final_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
@@ -122,7 +144,8 @@ void AtomicFile::write(const void* bytes, std::size_t count) {
 void AtomicFile::seek(std::uint64_t position) {
   if (position == position_) return;
   flush();
-  if (lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) fail(errno);
+  if (direct_ && (fcntl(file_, F_GETFL) & O_APPEND) != 0) fail(ESPIPE);  // everything goes to the end
+  if (lseek(file_, static_cast<off_t>(origin_ + position), SEEK_SET) < 0) fail(errno);
   position_ = position;
 }
 

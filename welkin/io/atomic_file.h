@@ -4,7 +4,8 @@
 //
 // The temporary file lies in the same folder, ".name.<process>-<number>.tmp", so that the rename cannot fail
 // half-way. Whatever stood at the path before stays until commit() and is then replaced in one step; a
-// symbolic link is followed. A path that is no ordinary file (/dev/null, a pipe) is written to directly.
+// symbolic link is followed. A path that is no ordinary file (/dev/null, a pipe) is written to directly, and
+// so is a file that is open already (/dev/stdout, /dev/fd/3): from where it stands.
 //
 // An exception, Interrupted among them, unwinds the destructor, which removes the temporary file. A program
 // that wants to end inside a signal handler calls removeUnfinishedFiles() there. POSIX. Not thread-safe;
@@ -47,8 +48,8 @@ class AtomicFile {
   std::filesystem::path path_, final_, temporary_;
   bool direct_ = false;  // no ordinary file: nothing to rename or remove
   int file_ = -1;
-  int slot_ = -1;  // in the registry of unfinished files
-  std::uint64_t position_ = 0;
+  int slot_ = -1;                            // in the registry of unfinished files
+  std::uint64_t position_ = 0, origin_ = 0;  // origin_: where the file stood, if it was open already
   std::string buffer_;
 };
 

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "welkin/core/error.h"
@@ -276,7 +277,8 @@ char* originOf(std::vector<T>& rows, std::int64_t offset) {
 std::map<std::string, std::string> textsOf(const Imf::Header& header) {
   std::map<std::string, std::string> texts;
   for (auto it = header.begin(); it != header.end(); ++it)
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+        text && std::strcmp(it.name(), "type") != 0)  // OpenEXR's own: how the file is laid out
       texts.emplace(it.name(), text->value());
   return texts;
 }

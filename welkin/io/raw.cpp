@@ -174,7 +174,10 @@ std::filesystem::path rawSidePath(const std::filesystem::path& path) {
 struct RawWriter::Impl {
   Impl(const std::filesystem::path& path, const TexelShape& s, const TexelNotes& notes)
       : shape(s), texels(rawTexelPath(path)), side(rawSidePath(path)) {
-    side.write(sideText(shape, notes));
+    const std::string text = sideText(shape, notes);
+    if (text.size() > kLongestSideFile)
+      throw ParameterError("cannot write " + side.path().string() + ": metadata of more than 1 MiB");
+    side.write(text);
   }
   TexelShape shape;
   AtomicFile texels, side;

@@ -231,6 +231,8 @@ Contents readContents(InputFile& file) {
       contents.grids.push_back(entry);
       break;
     }
+    const bool instance = !sharedTree.empty();  // has no buffers of its own
+    if (instance) entry.bufferByte = entry.gridByte;
     if (entry.gridByte < file.position() || entry.bufferByte < entry.gridByte || end < entry.bufferByte ||
         end > file.size())
       file.fail("the file is cut short or its table of contents is wrong", at);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "welkin/io/atomic_file.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -92,6 +94,42 @@ TEST_F(AtomicFileTest, DevicesAreWrittenNotReplaced) {
   writeTextFile("/dev/null", "x");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+// As a shell's redirections have them: what stands there stays, and so does the file.
+TEST_F(AtomicFileTest, OpenFilesAreWrittenFromWhereTheyStand) {
+  const auto path = folder / "log";
+  for (const int mode : {0, O_APPEND}) {
+    writeTextFile(path, "before\n");
+    const int log = open(path.c_str(), O_WRONLY | mode);
+    ASSERT_GE(log, 0);
+    lseek(log, 0, SEEK_END);
+    const std::string name = "/dev/fd/" + std::to_string(log);
+    writeTextFile(name, "first\n");
+    AtomicFile file(name);
+    file.write("xecond\n");
+    if (mode == 0) {
+      file.seek(0);
+      file.write("s");
+      file.seek(7);
+    } else {
+      EXPECT_THROW(file.seek(0), IoError);
+    }
+    file.commit();
+    EXPECT_EQ(write(log, "after\n", 6), 6);
+    close(log);
+    EXPECT_EQ(contents(path),
+              mode == 0 ? "before\nfirst\nsecond\nafter\n" : "before\nfirst\nxecond\nafter\n");
+  }
+  EXPECT_EQ(fileCount(), 1);
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  writeTextFile("/dev/fd/" + std::to_string(ends[1]), "through");
+  char read7[8] = {};
+  EXPECT_EQ(read(ends[0], read7, 7), 7);
+  EXPECT_STREQ(read7, "through");
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_F(AtomicFileTest, FollowsLinksAndKeepsPermissions) {

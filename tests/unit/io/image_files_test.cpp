@@ -142,6 +142,17 @@ TEST_F(ImageFiles, ExrKeepsTheSun) {
   EXPECT_EQ(readExr(folder / "edge.exr").image.at(3, 4, 1), 65519.0f);
 }
 
+// Tiles have an attribute that is OpenEXR's own, and no metadata.
+TEST_F(ImageFiles, ExrOfTilesGoesRound) {
+  writeExr(folder / "a.exr", randomLight(70, 40, 3), {.metadata = {{"scene", "Monterey"}}});
+  outputOf("exrmaketiled " + (folder / "a.exr").string() + " " + (folder / "tiles.exr").string());
+  const ExrPicture tiles = readExr(folder / "tiles.exr");
+  EXPECT_EQ(tiles.image.data, readExr(folder / "a.exr").image.data);
+  EXPECT_EQ(tiles.metadata.at("scene"), "Monterey");
+  writeExr(folder / "b.exr", tiles.image, {.metadata = tiles.metadata});
+  EXPECT_EQ(readExr(folder / "b.exr").metadata, tiles.metadata);
+}
+
 TEST_F(ImageFiles, ExrIsReadByOthers) {
   writeExr(folder / "a.exr", randomLight(10, 6, 3), {.metadata = {{"scene", "Monterey"}}});
   const std::string header = outputOf("exrheader " + (folder / "a.exr").string());
