@@ -3,6 +3,10 @@
 
 #include <epoxy/gl.h>
 
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 namespace welkin::testing {
 namespace {
 
@@ -242,6 +246,34 @@ std::map<std::string, std::string> ForeignEngine::state() {
       state["image " + std::to_string(i) + " " + std::to_string(what)] = std::to_string(value);
     }
   return state;
+}
+
+SrgbTarget::SrgbTarget() {
+  glGenTextures(1, &texture_);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, 64, 36, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glGenFramebuffers(1, &framebuffer_);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+}
+
+SrgbTarget::~SrgbTarget() {
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteTextures(1, &texture_);
+}
+
+double SrgbTarget::meanGreen() const {
+  std::vector<float> pixels(64 * 36 * 4);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glReadPixels(0, 0, 64, 36, GL_RGBA, GL_FLOAT, pixels.data());
+  double sum = 0.0;
+  for (std::size_t i = 1; i < pixels.size(); i += 4) {
+    const auto v = static_cast<double>(pixels[i]);
+    sum += v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  }
+  return sum / (64 * 36);
 }
 
 }  // namespace welkin::testing

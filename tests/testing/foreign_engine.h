@@ -27,4 +27,18 @@ class ForeignEngine {
   std::unique_ptr<Objects> objects_;
 };
 
+// 64 x 36 pixels of sRGB, 8 bits a channel, which are encoded while it lives.
+class SrgbTarget {
+ public:
+  SrgbTarget();
+  ~SrgbTarget();
+  SrgbTarget(const SrgbTarget&) = delete;
+  SrgbTarget& operator=(const SrgbTarget&) = delete;
+  unsigned framebuffer() const { return framebuffer_; }
+  double meanGreen() const;  // linear
+
+ private:
+  unsigned texture_ = 0, framebuffer_ = 0;
+};
+
 }  // namespace welkin::testing

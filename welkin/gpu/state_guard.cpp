@@ -15,13 +15,19 @@ struct Switch {
   int since;  // version of OpenGL, major * 10 + minor
 };
 // All off in a fresh context.
-constexpr Switch kAllSwitches[] = {{GL_DEPTH_TEST, 10},          {GL_STENCIL_TEST, 10},
-                                   {GL_CULL_FACE, 10},           {GL_COLOR_LOGIC_OP, 11},
-                                   {GL_POLYGON_SMOOTH, 10},      {GL_RASTERIZER_DISCARD, 30},
-                                   {GL_FRAMEBUFFER_SRGB, 30},    {GL_SAMPLE_ALPHA_TO_COVERAGE, 13},
-                                   {GL_SAMPLE_ALPHA_TO_ONE, 13}, {GL_SAMPLE_COVERAGE, 13},
-                                   {GL_SAMPLE_MASK, 32},         {GL_SAMPLE_SHADING, 40},
-                                   {GL_PRIMITIVE_RESTART, 31},   {GL_PRIMITIVE_RESTART_FIXED_INDEX, 43}};
+constexpr Switch kAllSwitches[] = {{GL_DEPTH_TEST, 10},
+                                   {GL_STENCIL_TEST, 10},
+                                   {GL_CULL_FACE, 10},
+                                   {GL_COLOR_LOGIC_OP, 11},
+                                   {GL_POLYGON_SMOOTH, 10},
+                                   {GL_RASTERIZER_DISCARD, 30},
+                                   {GL_SAMPLE_ALPHA_TO_COVERAGE, 13},
+                                   {GL_SAMPLE_ALPHA_TO_ONE, 13},
+                                   {GL_SAMPLE_COVERAGE, 13},
+                                   {GL_SAMPLE_MASK, 32},
+                                   {GL_SAMPLE_SHADING, 40},
+                                   {GL_PRIMITIVE_RESTART, 31},
+                                   {GL_PRIMITIVE_RESTART_FIXED_INDEX, 43}};
 
 // Since when there are more than one viewport, blending by draw buffer, images.
 constexpr int kViewportsSince = 41, kBlendsSince = 40, kImagesSince = 42;

@@ -11,7 +11,8 @@ namespace welkin::gpu {
 // was: program, vertex array, buffers, framebuffers, every viewport and scissor, blending and colour mask of
 // every draw buffer, depth, stencil, culling, clipping, sample coverage, primitive restart, texture units 0
 // to kUnits - 1 with their samplers, image units 0 and 1 where there are any, pixel storage. The context must
-// stay current. Allocates nothing.
+// stay current. Allocates nothing. Whether sRGB is encoded stays as it is: no framebuffer of this folder's
+// has such pixels, and those of others mean it.
 class StateGuard {
  public:
   // Of textures, of which a program leaves the first free. OpenGL 3.3 has 48 in all stages together, but
@@ -43,7 +44,7 @@ class StateGuard {
   struct Stencil {
     int function, reference, mask, fail, depthFail, pass;
   };
-  static constexpr int kImageUnits = 2, kDrawBuffers = 8, kViewports = 16, kClipDistances = 8, kSwitches = 14,
+  static constexpr int kImageUnits = 2, kDrawBuffers = 8, kViewports = 16, kClipDistances = 8, kSwitches = 13,
                        kPixelStores = 16;
 
   void keepDrawBuffers();

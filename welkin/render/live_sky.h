@@ -37,7 +37,8 @@
 namespace welkin::render {
 
 struct LiveOptions {
-  float scale = 1.0f;    // written for each cd/m2: 1 into float targets, an exposure into others
+  float scale = 1.0f;  // written for each cd/m2: 1 into float targets, an exposure into others. Linear; into
+                       // sRGB targets with GL_FRAMEBUFFER_SRGB, as the engine has it set
   bool backdrop = true;  // clear sky, discs of sun and moon, ground; else only the clouds, over what is there
   float flare = 0.0f;    // share of the sun's light that a lens scatters into a glow and ghosts; 0: none
   EngineDepth depth{};   // of what hides the sun from the flare, and metaballs

@@ -512,6 +512,22 @@ TEST_F(LiveSkyTest, AnEnginesStateDoesNotShow) {
   }
 }
 
+// An engine that has its pictures in sRGB finds linear light in them.
+TEST_F(LiveSkyTest, SrgbTargetsAreEncoded) {
+  for (const scene::Scene& s : {thinScene(), marchedScene(), heapedScene()}) {
+    LiveSky sky;
+    sky.update(s, 0.0);
+    const shading::View view = shading::viewOf(sky.state());
+    const LiveOptions options{.scale = 2e-5f};
+    sky.draw(view, target, options);
+    const double linear = static_cast<double>(meanOf(target.readPicture(0, 3)).y);
+    ASSERT_LT(linear, 0.6);
+    const SrgbTarget encoded;
+    sky.draw(view, {encoded.framebuffer(), {0, 0, 64, 36}}, options);
+    EXPECT_NEAR(encoded.meanGreen(), linear, 0.03 * linear);
+  }
+}
+
 // Only the clouds, over what an engine has drawn.
 TEST_F(LiveSkyTest, WithoutABackdropWhatIsThereShowsThrough) {
   scene::Scene s = thinScene();
