@@ -106,6 +106,8 @@ struct LiveSky::Impl {
   void requireSky() const {
     if (!state) throw ParameterError("there is no sky yet; expected update() before this");
   }
+  // Whether a scene is the state's, but for the camera and what only pictures have.
+  bool knows(const scene::Scene& scene) const;
   void change(const scene::SkyState& next);
   void changeScene(const scene::SkyState& next, const Others& there);
   void refresh();
@@ -144,9 +146,14 @@ const scene::SkyState& LiveSky::state() const {
 
 void LiveSky::update(const scene::Scene& scene, double secondsAfter) {
   Impl& m = *impl_;
-  if (!m.state || m.state->scene != scene) {
+  const bool known = m.state && m.knows(scene), same = known && m.state->scene == scene;
+  if (!known) {
     update(scene::buildSky(scene, secondsAfter));
-  } else if (m.state->secondsAfter != secondsAfter) {
+  } else if (!same || m.state->secondsAfter != secondsAfter) {
+    if (!same) {
+      scene::validate(scene);
+      m.state->scene = scene;
+    }
     const gpu::StateGuard guard;
     scene::moveSky(*m.state, secondsAfter);
     m.refresh();
@@ -159,8 +166,18 @@ void LiveSky::update(const scene::SkyState& state) {
   impl_->refresh();
 }
 
+bool LiveSky::Impl::knows(const scene::Scene& scene) const {
+  if (state->scene == scene) return true;
+  if (state->scene.output.quality != scene.output.quality) return false;
+  scene::Scene other = scene;
+  other.camera = state->scene.camera;
+  other.output = state->scene.output;
+  other.atS = state->scene.atS;
+  return other == state->scene;
+}
+
 void LiveSky::Impl::change(const scene::SkyState& next) {
-  const bool same = state && state->scene == next.scene;
+  const bool same = state && knows(next.scene);
   Others there;
   there.volumes = std::ranges::any_of(
       next.weather.layers, [&](const weather::Layer& layer) { return scene::isVolume(next.scene, layer); });

@@ -17,7 +17,8 @@
 // (render/sky_table_keys.h); for the eye of view 0, which may climb or sink as aircraft do, they are ready
 // before it comes to their heights, for other views in time alone.
 //
-// The air is that about each view's eye, wherever the scene's own is.
+// The air is that about each view's eye, wherever the scene's own is. Of the scene's keys those of the camera
+// and of output play no part but for quality, sun_disc and stars: others may change with every update.
 //
 // Metaballs are splats here (render/splat_pass.h), relit every frame, whatever metaballs_as says; among
 // sheets and volumes all of them together have their place by the middle of their heights.

@@ -477,6 +477,33 @@ TEST_F(LiveSkyTest, TheAirIsThatOfTheView) {
   }
 }
 
+// As an engine's sliders have it.
+TEST_F(LiveSkyTest, CameraAndExposureKeepTheSky) {
+  LiveSky sky;
+  scene::Scene s = marchedScene();
+  sky.update(s, 10.0);
+  const auto air = sky.state().atmosphere;
+  const shading::View view = shading::viewOf(sky.state());
+  s.output.exposureEv = 12.0;
+  s.output.width = 640;
+  s.camera.pitchDeg = 33.0;
+  s.atS = 5.0;
+  sky.update(s, 10.0);
+  EXPECT_EQ(sky.state().atmosphere, air);
+  EXPECT_EQ(sky.state().scene, s);
+  EXPECT_NE(shading::viewOf(sky.state()).view, view.view);
+  s.output.sunDisc = false;
+  sky.update(s, 10.0);
+  EXPECT_FALSE(sky.state().scene.output.sunDisc);
+  EXPECT_EQ(sky.state().atmosphere, air);
+  s.camera.fovDeg = 500.0;
+  EXPECT_THROW(sky.update(s, 10.0), ParameterError);
+  s.camera.fovDeg = 70.0;
+  s.output.quality = scene::Quality::kHigh;
+  sky.update(s, 10.0);
+  EXPECT_NE(sky.state().atmosphere, air);
+}
+
 // Nor where time comes to key instants of cover.
 TEST_F(LiveSkyTest, UpdatesWithVolumesAllocateNothing) {
   LiveSky sky;
