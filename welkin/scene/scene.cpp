@@ -194,11 +194,6 @@ void requireAtMost(std::size_t most, std::size_t count, const std::string& key, 
 }  // namespace
 
 void validate(const Scene& s) {
-  if (const std::string problem = rangeProblemIn(s); !problem.empty()) throw ParameterError(problem);
-  UtcTime minute = s.time;
-  minute.second = 0.0;
-  require(s.time.second >= 0.0 && s.time.second < 60.0 && addSeconds(minute, 0.0) == minute, {"time"},
-          "time is no moment of the calendar; expected one such as 2026-06-21T18:30:00Z");
   validateSize(s);
   requireAtMost(weather::kMaxLayers, s.layers.size(), "layer", "layers");
   for (const weather::Layer& layer : s.layers) weather::validate(layer);
@@ -215,6 +210,12 @@ void validate(const Scene& s) {
             "clouds of metaballs that are marched scatter all light as droplets do; expected phase droplets "
             "and albedo 1, or metaballs_as splats");
   }
+  // Those that know more of what is wrong come before.
+  if (const std::string problem = rangeProblemIn(s); !problem.empty()) throw ParameterError(problem);
+  UtcTime minute = s.time;
+  minute.second = 0.0;
+  require(s.time.second >= 0.0 && s.time.second < 60.0 && addSeconds(minute, 0.0) == minute, {"time"},
+          "time is no moment of the calendar; expected one such as 2026-06-21T18:30:00Z");
   validateTimes(s);
   validate(s.skyBox);
   validate(s.slab);
