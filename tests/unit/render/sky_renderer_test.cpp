@@ -173,7 +173,7 @@ TEST_F(Sky, OvercastDimsTheGround) {
 // the opposite.
 TEST_F(Sky, ThickOvercastIsGreyAndNoBrighterAtTheHorizon) {
   const Image<float> picture =
-      drawn(projected(cloudyScene(50.0, {Genus::kStratus}, 8.0), scene::Projection::kEquirect, 32, 32));
+      drawn(projected(cloudyScene(50.0, {Genus::kStratus}, 8.0), scene::Projection::kEquirect, 64, 32));
   const glm::vec3 zenith = meanOf(picture, 0, 4), low = meanOf(picture, 13, 15);
   EXPECT_GT(luminanceOf(zenith), 0.8 * luminanceOf(low));
   EXPECT_NEAR(zenith.z / zenith.x, 1.0, 0.45);
