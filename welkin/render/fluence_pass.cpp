@@ -2,6 +2,7 @@
 #include "welkin/render/fluence_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace welkin::render {
@@ -11,11 +12,10 @@ using shading::FluenceLayout;
 constexpr int kTexels = FluenceLayout::kMostCells / 4;
 constexpr auto kHalfM = shading::LightVolumeLayout::kHalfM;
 constexpr auto kCascades = kHalfM.size();
-// Of each cascade. Wide ones have columns that are wider than their clouds. The widest begins with each
-// column by itself, as of a closed deck: deep decks lose little through sides, and so few steps would not
-// fill them.
+// Of each cascade. Wide ones have columns that are wider than their clouds. The widest begins with nothing,
+// but a closed deck with each column by itself: deep ones lose little through sides, and so few steps would
+// not fill them. Broken clouds are drawn by a fit to what these steps leave (docs/theory.md).
 constexpr std::array<int, kCascades> kRelaxations = {16, 10, 4};
-constexpr float kApartM = 1e9f;  // a side through which nothing comes
 // What a step is, in its cascade.
 enum { kDepths, kSources, kStart, kRelax };
 constexpr int stepsOf(std::size_t cascade) {
@@ -30,6 +30,7 @@ FluencePass::FluencePass()
 
 void FluencePass::begin(const shading::LightVolumeLayout& volume) {
   towardsSun_ = volume.towardsSun;
+  broken_ = volume.broken;
   if (relaxProgram_ != nullptr && volume.bands == bands_ && 2 * layout_.columns == volume.columns) return;
   bands_ = volume.bands;
   slices_ = static_cast<int>(volume.heightsM.size());
@@ -101,14 +102,15 @@ void FluencePass::start(int cascade) {
   triangle_.draw(start_, steps_[0].target);
 }
 
-void FluencePass::relax(int cascade, bool alone) {
+void FluencePass::relax(int cascade, bool first) {
   relaxProgram_->bind("uDepths", depths_.cells);
   relaxProgram_->bind("uSources", sources_.cells);
   relaxProgram_->bind("uBefore", steps_[last_].cells);
   relaxProgram_->set("uCells", layout_.cells);
-  relaxProgram_->set("uColumnM", alone ? kApartM
-                                       : 2.0f * kHalfM[static_cast<std::size_t>(cascade)] /
-                                             static_cast<float>(layout_.columns));
+  const float columnM =
+      2.0f * kHalfM[static_cast<std::size_t>(cascade)] / static_cast<float>(layout_.columns);
+  // What goes through a side falls with the square of the width.
+  relaxProgram_->set("uColumnM", first ? columnM / std::sqrt(std::max(broken_, 1e-9f)) : columnM);
   last_ = 1 - last_;
   triangle_.draw(*relaxProgram_, steps_[last_].target);
 }

@@ -33,7 +33,7 @@ class FluencePass {
  private:
   void cells(int cascade, bool sources, const gpu::Texture3D& lightVolume);
   void start(int cascade);
-  void relax(int cascade, bool alone);  // alone: nothing comes from other columns
+  void relax(int cascade, bool first);  // first: of the widest cascade
   void store(int cascade);
 
   gpu::FullscreenTriangle triangle_;
@@ -54,6 +54,7 @@ class FluencePass {
   std::vector<shading::LightVolumeLayout::Band> bands_;
   int slices_ = 0;
   bool towardsSun_ = true;
+  float broken_ = 1.0f;  // LightVolumeLayout::broken
   shading::FluenceLayout layout_;
 };
 
