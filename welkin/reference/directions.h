@@ -22,7 +22,7 @@ struct OnCircle {
 };
 inline OnCircle onCircle(double u) {
   // Of an eighth of the circle to either side of an axis, by series.
-  const auto quarter = static_cast<int>(4.0 * u + 0.5);
+  const int quarter = static_cast<int>(8.0 * u + 1.0) >> 1;
   const double x = (4.0 * u - quarter) * (0.5 * kPi), x2 = x * x;
   const double s = x *
                    (1.0 - x2 / 6.0 *

@@ -36,6 +36,7 @@ PhaseSampler PhaseSampler::henyeyGreenstein(double g) {
 
 PhaseSampler PhaseSampler::tabulated(const std::function<double(double)>& phase) {
   std::vector<double> densities;
+  densities.reserve(kSteps);
   for (int i = 0; i < kSteps; ++i) {
     const double a = 1.0 - edgeVersine(i), b = 1.0 - edgeVersine(i + 1);
     densities.push_back((phase(a) + 4.0 * phase(0.5 * (a + b)) + phase(b)) / 6.0);  // Simpson's rule
@@ -46,6 +47,7 @@ PhaseSampler PhaseSampler::tabulated(const std::function<double(double)>& phase)
 PhaseSampler PhaseSampler::above(double level) const {
   assert(isTabulated());
   std::vector<double> densities;
+  densities.reserve(kSteps);
   for (int i = 0; i < kSteps; ++i)
     densities.push_back(std::max(densityIn(static_cast<std::size_t>(i)) - level, 0.0));
   return of(densities);
