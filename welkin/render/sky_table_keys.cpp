@@ -17,6 +17,7 @@ constexpr double kSteps = 8.0;  // the height is so many steps
 const double kFarM = kSteps * (kMostStepM - kLeastStepM),
              kFarLevel = kSteps * std::log1p(kFarM / (kSteps * kLeastStepM));
 
+constexpr double kHighestM = 1e8;  // from where on all is one
 constexpr double kKeyS = scene::ClearSkyKey::kKeyS;
 // Rounds of all views that a key is kept for after its last use.
 constexpr std::uint64_t kKeptFor = 2;
@@ -44,9 +45,8 @@ double SkyTableKeys::heightM(int level) {
 }
 
 double SkyTableKeys::levelOf(double heightM) {
-  if (heightM <= 0.0) return 0.0;
-  return heightM < kFarM ? kSteps * std::log1p(heightM / (kSteps * kLeastStepM))
-                         : kFarLevel + (heightM - kFarM) / kMostStepM;
+  const double h = std::clamp(heightM, 0.0, kHighestM);
+  return h < kFarM ? kSteps * std::log1p(h / (kSteps * kLeastStepM)) : kFarLevel + (h - kFarM) / kMostStepM;
 }
 
 SkyTableKeys::Place SkyTableKeys::placeOf(const scene::SkyState& state, double eyeM) {
@@ -55,8 +55,7 @@ SkyTableKeys::Place SkyTableKeys::placeOf(const scene::SkyState& state, double e
   place.atS = std::floor(state.secondsAfter / kKeyS) * kKeyS;
   place.instantWeight = static_cast<int>((state.secondsAfter - place.atS) / kKeyS * kWeights);
   // By height, not by level, in which the tables are straighter.
-  constexpr double kHighest = 1e8;
-  const double heightOfEye = std::clamp(eyeM, 0.0, kHighest);
+  const double heightOfEye = std::clamp(eyeM, 0.0, kHighestM);
   place.level = static_cast<int>(levelOf(heightOfEye));
   const double below = heightM(place.level), above = heightM(place.level + 1);
   place.heightWeight =
