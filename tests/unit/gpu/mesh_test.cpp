@@ -114,9 +114,9 @@ TEST_F(MeshTest, InsideAGuardTheContextIsFresh) {
   int told = 0;
   for (const auto& [name, value] : fresh) {
     told += engines.at(name) != value;
-    for (const char* kind :
-         {"unit ", "image ", "viewport", "scissor box", "blend ", "stencil ", "depth mask", "depth fails",
-          "vertex array", "array buffer", "draw framebuffer", "read framebuffer", "program", "seamless"})
+    for (const char* kind : {"unit ", "image ", "viewport", "scissor box", "blend ", "stencil ", "depth mask",
+                             "depth fails", "vertex array", "array buffer", "draw framebuffer",
+                             "read framebuffer", "program", "seamless", "sRGB"})
       if (name.starts_with(kind)) inside[name] = value;
     EXPECT_EQ(inside[name], value) << name;
   }
