@@ -108,14 +108,14 @@ TexelSource sourceOf(const Request& r, const NoiseTexture& texture, const std::s
   return s;
 }
 
-// Curl in the plane has two channels, files have one, three or four: a third one of zeros, as they are
-// normalised.
+// Where 0 of curl noise lies as it is normalised.
 float curlZero(const noise::NoiseParams& params) {
   using noise::Normalisation;
   const bool lifted =
       params.normalisation == Normalisation::kThesis || params.normalisation == Normalisation::kUnitRange;
   return lifted ? 0.5f : 0.0f;
 }
+// Curl in the plane has two channels, files have one, three or four: a third one of zeros.
 void widen(const std::vector<float>& two, float zero, std::vector<float>& three) {
   three.assign(two.size() / 2 * 3, zero);
   for (std::size_t i = 0; i < two.size() / 2; ++i) std::copy_n(&two[2 * i], 2, &three[3 * i]);

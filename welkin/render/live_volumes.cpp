@@ -100,7 +100,6 @@ void LiveVolumes::change(const scene::SkyState& state, const std::vector<ThinLay
 void LiveVolumes::setScene(gpu::Program& p, const scene::SkyState& state) const {
   setUniforms(p, order_);
   setUniforms(p, shading::cloudUniforms(state));
-  setUniforms(p, shading::marchUniforms(shading::marchSettings(state.scene.output.quality)));
   setUniforms(p, shading::lightVolumeUniforms(layout_));
   setUniforms(p, shading::fluenceUniforms(shading::fluenceLayout(layout_)));
 }

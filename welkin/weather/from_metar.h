@@ -10,9 +10,8 @@
 //   it
 // - missing: a base or amount that the report says exists but does not give is climatological, `baseAssumed`
 //   is set and a note says so; SKC, CLR, NSC, NCD and CAVOK make no layer
-// - obscured: VV, and thick fog, make a layer of fog from the ground that hides the whole sky; not where
-// dust,
-//   sand, smoke, ash, haze or snow is reported and no fog: that is in the air, by the visibility
+// - obscured: VV, and thick fog, make a layer of fog from the ground that hides the whole sky; not
+//   where dust, sand, smoke, ash, haze or snow is reported and no fog: that is in the air, by the visibility
 // - thin fog: fog through which the observer reports clouds or a clear sky is a shallow layer: 1.6 oktas,
 //   near the horizon
 // - haze: from the visibility, by a contrast of 5 % in reports and of 2 % in Weather, where it is 1.31 times

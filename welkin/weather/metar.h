@@ -14,9 +14,9 @@
 //   more than a degree above the temperature.
 // - Element missing in the report (solidi, or the group is not there) means an empty value, and is no error,
 //   except that a report must name its station and its time.
-// - The trend (NOSIG, TEMPO, BECMG, INTER, PROB, FM) is recognised and not decoded. Of the remarks the T
-// group is
-//   read, which gives temperature and dew point to a tenth of a degree, and those that name genera of cloud.
+// - The trend (NOSIG, TEMPO, BECMG, INTER, PROB, FM) is recognised and not decoded. Of the remarks
+//   the T group is read, which gives temperature and dew point to a tenth of a degree, and those that name
+//   genera of cloud.
 // - Lower-case letters are read as upper case: the telegraph alphabet that the code was made for has one case
 //   only.
 // - Any bytes may come in; time is linear in their number.
