@@ -136,6 +136,10 @@ Json reportOf(const Request& r, const NoiseTexture& texture, const TexelOutput& 
                   {"delivered", s.covered()},
                   {"cutoff", texture.law().threshold}};
   }
+  if (r.params.isPlain()) {
+    const noise::Lift lift = noise::liftOf(r.params.noise);
+    j["lift"] = {{"scale", lift.scale}, {"bias", lift.bias}};
+  }
   j["histogram"] = s.histogram();
   j["total_ms"] = ms;
   j["peak_rss_mib"] = peakRssMib();

@@ -93,11 +93,4 @@ void validate(const NoiseParams& p) {
           "Perlin-Worley noise fills [0, 1] by itself and has no unit variance");
 }
 
-Lift liftOf(const NoiseParams& p) {
-  if (p.normalisation == Normalisation::kUnitVariance) return {0.125f, 0.5f};
-  const bool positive =
-      p.normalisation != Normalisation::kRaw || p.kind == Kind::kCellular || p.kind == Kind::kPerlinWorley;
-  return positive ? Lift{1.0f, 0.0f} : Lift{0.5f, 0.5f};
-}
-
 }  // namespace welkin::noise

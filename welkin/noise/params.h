@@ -77,7 +77,9 @@ void describe(NoiseParams& p, ParamVisitor& v);
 void validate(const NoiseParams& p);
 
 // Noise of these parameters to [0, 1], as integers hold it: v for what is positive by itself or by its
-// normalisation, (v + 1) / 2 for raw noise of both signs, 1/2 + v/8 for unit variance.
+// normalisation, (v + 1) / 2 for raw noise of both signs, 1/2 + v/8 for unit variance. Raw curl, which is a
+// derivative and has no bound that is of use: 1/2 + v/(8 s), s the deviation of the channel that has the
+// greatest. For parameters that validate() takes.
 struct Lift {
   float scale, bias;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "welkin/core/random.h"
 
@@ -158,15 +159,25 @@ Spread spreadOf(const NoiseParams& p) {
   return {0.0, 1.0, -1.0, 1.0};
 }
 
-// The deviation of a channel of curl noise, in the mean over channels.
-double curlDeviation(const Plan& plan) {
-  double squares = 0.0;
-  for (const auto& channel : plan.gradients)
+// Variances of the channels of curl noise.
+std::vector<double> curlVariances(const Plan& plan) {
+  std::vector<double> variances;
+  for (const auto& channel : plan.gradients) {
+    double squares = 0.0;
     for (const GradientTerm& t : channel) {
       const double d = t.weight * GradientLattice::slopeDeviation(t.lattice.axes(), t.derivative);
       squares += d * d;
     }
-  return std::sqrt(squares / static_cast<double>(plan.gradients.size()));
+    variances.push_back(squares);
+  }
+  return variances;
+}
+
+// Four deviations of the channel that has the greatest, either way: derivatives have no bound that is of use,
+// and grow with frequencies, weights and octaves. 1/2 + v/2 where there is no noise to speak of.
+Affine curlLift(const std::vector<double>& variances) {
+  const double deviation = std::sqrt(*std::max_element(variances.begin(), variances.end()));
+  return {deviation > 1e-30 ? 1.0 / (8.0 * deviation) : 0.5, 0.5, 0.0, 1.0};
 }
 
 // Six deviations to either side are the range of curl noise.
@@ -211,6 +222,21 @@ Affine normalisation(const NoiseParams& p, const Spread& s) {
   return {1.0, 0.0, -kInfinity, kInfinity};
 }
 
+void finishCurl(const NoiseParams& p, Plan& plan) {
+  const std::vector<double> variances = curlVariances(plan);
+  const double sum = std::accumulate(variances.begin(), variances.end(), 0.0);
+  plan.normalise = curlNormalisation(p, std::sqrt(sum / static_cast<double>(variances.size())));
+  if (p.normalisation == Normalisation::kRaw) plan.quantise = curlLift(variances);
+}
+
+// Where a kind's range is known beforehand.
+Affine fixedLift(const NoiseParams& p) {
+  if (p.normalisation == Normalisation::kUnitVariance) return {0.125, 0.5, 0.0, 1.0};
+  const bool positive =
+      p.normalisation != Normalisation::kRaw || p.kind == Kind::kCellular || p.kind == Kind::kPerlinWorley;
+  return positive ? Affine{1.0, 0.0, 0.0, 1.0} : Affine{0.5, 0.5, 0.0, 1.0};
+}
+
 // Perlin-Worley's gradient noise starts an octave above its coarsest cells.
 constexpr int kPerlinWorleyOctave = 1;
 
@@ -223,8 +249,7 @@ Plan makePlan(const NoiseParams& p) {
   const bool measured =
       p.normalisation == Normalisation::kUnitRange || p.normalisation == Normalisation::kUnitVariance;
   plan.normalise = normalisation(p, measured ? spreadOf(p) : Spread{0.0, 1.0, -1.0, 1.0});
-  const Lift lift = liftOf(p);
-  plan.quantise = {lift.scale, lift.bias, 0.0, 1.0};
+  plan.quantise = fixedLift(p);
   switch (p.kind) {
     case Kind::kPerlin:
       plan.gradients.resize(1);
@@ -267,7 +292,7 @@ Plan makePlan(const NoiseParams& p) {
           }
         }
       }
-      plan.normalise = curlNormalisation(p, curlDeviation(plan));
+      finishCurl(p, plan);
       break;
     case Kind::kDistorted:
       for (int o = 0; o < p.octaves; ++o) {
@@ -280,6 +305,12 @@ Plan makePlan(const NoiseParams& p) {
       break;
   }
   return plan;
+}
+
+Lift liftOf(const NoiseParams& p) {
+  const bool curl = p.kind == Kind::kCurl && p.normalisation == Normalisation::kRaw;
+  const Affine lift = curl ? makePlan(p).quantise : fixedLift(p);
+  return {static_cast<float>(lift.scale), static_cast<float>(lift.bias)};
 }
 
 }  // namespace welkin::noise

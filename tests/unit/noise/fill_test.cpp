@@ -436,7 +436,11 @@ TEST(Fill, RoundsToEveryFormat) {
         const double v = floats[i];
         const bool isSigned =
             n == Normalisation::kRaw && kind != Kind::kCellular && kind != Kind::kPerlinWorley;
-        const double u = n == Normalisation::kUnitVariance ? 0.5 + v / 8 : isSigned ? (v + 1) / 2 : v;
+        const Lift lift = liftOf(p);
+        const double u = n == Normalisation::kUnitVariance ? 0.5 + v / 8
+                         : isSigned && kind == Kind::kCurl ? lift.scale * v + lift.bias
+                         : isSigned                        ? (v + 1) / 2
+                                                           : v;
         const double clamped = std::min(std::max(u, 0.0), 1.0);
         EXPECT_NEAR(bytes[i], 255 * clamped, 0.5001);
         EXPECT_NEAR(words[i], 65535 * clamped, 0.51);

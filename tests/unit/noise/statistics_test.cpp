@@ -104,6 +104,33 @@ TEST(Statistics, UnitVarianceAndUnitRangeAreWhatTheySay) {
       }
 }
 
+// Whatever octaves add up to, integers hold curl noise: of a channel hardly a texel is cut off, and half the
+// range is used.
+TEST(Statistics, IntegersHoldCurlNoise) {
+  for (const int dimensions : {2, 3})
+    for (const int octaves : {1, 3, 6, 8})
+      for (const double persistence : {0.5, 1.0})
+        for (const glm::dvec3 frequency : {glm::dvec3(4), glm::dvec3(4, 16, 2)}) {
+          NoiseParams p{.kind = Kind::kCurl, .dimensions = dimensions, .frequency = frequency};
+          p.octaves = octaves;
+          p.persistence = persistence;
+          const Noise noise(p);
+          const Grid grid = Grid::tile(dimensions == 2 ? glm::ivec3(250, 250, 1) : glm::ivec3(40));
+          const std::size_t texels = static_cast<std::size_t>(grid.size.x) * grid.size.y * grid.size.z;
+          std::vector<std::uint8_t> bytes(texels * static_cast<std::size_t>(dimensions));
+          noise.fill(grid, std::span(bytes));
+          const auto [least, most] = std::minmax_element(bytes.begin(), bytes.end());
+          EXPECT_GT(*most - *least, 127) << dimensions << " " << octaves;
+          for (int c = 0; c < dimensions; ++c) {
+            std::size_t cut = 0;
+            for (std::size_t i = static_cast<std::size_t>(c); i < bytes.size(); i += dimensions)
+              cut += bytes[i] == 0 || bytes[i] == 255;
+            EXPECT_LT(static_cast<double>(cut), 0.001 * static_cast<double>(texels))
+                << dimensions << " " << octaves << " " << persistence << " " << frequency.y;
+          }
+        }
+}
+
 // The thesis's formula: clamp(sum a_o (n_o + 1) / 2).
 TEST(Statistics, TheThesissNormalisationIsItsFormula) {
   NoiseParams p{.frequency = {6, 6, 6}, .octaves = 6, .amplitude = 0.7};
