@@ -104,6 +104,25 @@ TEST(Statistics, UnitVarianceAndUnitRangeAreWhatTheySay) {
       }
 }
 
+// In a plane Perlin's own noise is a plane of his lattice of three axes: less than the lattice has on
+// average.
+TEST(Statistics, ThePublishedTableHasUnitVarianceInAPlaneToo) {
+  for (const Fractal fractal : {Fractal::kFbm, Fractal::kBillow, Fractal::kRidged})
+    for (const int octaves : {1, 4}) {
+      if (octaves > 1 && fractal != Fractal::kFbm) continue;  // the last has one sample a cell, in its middle
+      NoiseParams p{.dimensions = 2, .frequency = glm::dvec3(256), .octaves = octaves, .fractal = fractal};
+      p.table = Table::kPublished;
+      p.normalisation = Normalisation::kUnitVariance;
+      const Moments m = momentsOf(filled(p, {2048, 2048, 1}));
+      EXPECT_NEAR(m.mean, 0.0, 0.01) << octaves;
+      EXPECT_NEAR(m.deviation, 1.0, 0.01) << octaves;
+      p.normalisation = Normalisation::kUnitRange;
+      const Moments r = momentsOf(filled(p, {2048, 2048, 1}));
+      EXPECT_GE(r.least, 0.0);
+      EXPECT_LE(r.greatest, 1.0);
+    }
+}
+
 // Whatever octaves add up to, integers hold curl noise: of a channel hardly a texel is cut off, and half the
 // range is used.
 TEST(Statistics, IntegersHoldCurlNoise) {
