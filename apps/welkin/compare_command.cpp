@@ -12,6 +12,7 @@
 
 #include "call_files.h"
 #include "render_settings.h"
+#include "terminal_text.h"
 #include "usage_error.h"
 #include "welkin/core/colour.h"
 #include "welkin/core/error.h"
@@ -155,7 +156,7 @@ int runCompare(const CompareArgs& args) {
                               {"largest_flip", flipMost}};
   if (p.luminance) j["exposure_ev"] = p.exposureEv;
   if (args.json) {
-    fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", printableJson(j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)));
     return 0;
   }
   const char* unit = p.luminance ? " cd/m2" : " of white";

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report.h"
+#include "terminal_text.h"
 #include "usage_error.h"
 #include "welkin/io/file_extension.h"
 #include "welkin/io/texel_file.h"
@@ -143,13 +144,14 @@ Json metaballsJson(const std::string& path) {
 
 void printPlain(const Json& j, int indent = 0) {
   for (const auto& [key, value] : j.items()) {
-    fmt::print("{:{}}{}", "", indent, key);
+    fmt::print("{:{}}{}", "", indent, printable(key));
     if (value.is_object()) {
       fmt::print("\n");
       printPlain(value, indent + 2);
     } else {
-      fmt::print(" {}\n", value.is_string() ? value.get<std::string>()
-                                            : value.dump(-1, ' ', false, Json::error_handler_t::replace));
+      const std::string text = value.is_string() ? value.get<std::string>()
+                                                 : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+      fmt::print(" {}\n", printable(text));
     }
   }
 }
@@ -164,7 +166,8 @@ void printTheme(const InfoArgs& args, bool isFile) {
     }
   }();
   for (const scene::Sheet& sheet : theme.sheets) scene::validate(sheet);
-  fmt::print("{}", args.json ? scene::toJson(theme) + "\n" : scene::themeToToml(theme));
+  fmt::print("{}", args.json ? printableJson(scene::toJson(theme)) + "\n"
+                             : printableLines(scene::themeToToml(theme)));
 }
 
 }  // namespace
@@ -177,7 +180,8 @@ int runInfo(const InfoArgs& args) {
   }
   if (extension == ".toml") {
     const scene::Scene s = scene::readSceneFile(args.file).scene;
-    fmt::print("{}", args.json ? scene::toJson(s) + "\n" : scene::sceneToToml(s));
+    fmt::print("{}",
+               args.json ? printableJson(scene::toJson(s)) + "\n" : printableLines(scene::sceneToToml(s)));
     return 0;
   }
   Json j;
@@ -192,7 +196,7 @@ int runInfo(const InfoArgs& args) {
   }
   if (j.is_null()) j = texelsJson(args.file);
   if (args.json)
-    fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", printableJson(j.dump(2, ' ', false, Json::error_handler_t::replace)));
   else
     printPlain(j);
   return 0;

@@ -23,6 +23,7 @@
 #include "render_command.h"
 #include "render_settings.h"
 #include "sun_command.h"
+#include "terminal_text.h"
 #include "usage_error.h"
 #include "welkin/scene/param_text.h"
 
@@ -82,7 +83,7 @@ int run(const SunArgs& args) {
 }
 
 int fail(int code, const char* message) {
-  fmt::print(stderr, "welkin: {}\n", message);
+  fmt::print(stderr, "welkin: {}\n", printable(message));
   return code;
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "terminal_text.h"
 #include "welkin/core/error.h"
 #include "welkin/core/units.h"
 #include "welkin/weather/metar.h"
@@ -236,7 +237,8 @@ void runMetarCommand(const std::vector<std::string>& reports, const std::optiona
   // `place` of the report, before its column.
   const auto show = [&](std::string_view report, const std::string& place) {
     const MetarResult r = weather::parseMetar(report);
-    const std::string out = json ? metarToJson(report, r) + "\n" : metarToText(r);
+    const std::string out =
+        json ? printableJson(metarToJson(report, r)) + "\n" : printableLines(metarToText(r));
     std::fwrite(out.data(), 1, out.size(), stdout);
     ++count;
     if (r.ok() || wrong++ > 0) return;

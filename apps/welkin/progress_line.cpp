@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "terminal_text.h"
+
 namespace welkin::app {
 
 std::string durationText(double seconds) {
@@ -46,7 +48,7 @@ void ProgressLine::show(double fraction, std::string_view note) {
 }
 
 void ProgressLine::warn(const std::string& what) {
-  fmt::print(stderr, "{}welkin: warning: {}\n", drawn_ ? "\r\033[K" : "", what);
+  fmt::print(stderr, "{}welkin: warning: {}\n", drawn_ ? "\r\033[K" : "", printable(what));
   std::fflush(stderr);
 }
 

@@ -30,6 +30,22 @@ class Convert(ProgramTest):
             self.succeed("convert", "a.raw", name, *how)
             self.assertNotIn("meaning", self.info(name))
 
+    def test_text_of_files_does_not_drive_the_terminal(self):
+        hostile = "\x1b]0;title\x07 \x9b31m \x7f \r\n\tWolke über Zürich \u96f2"
+        shown = "\\x1b]0;title\\x07 \\x9b31m \\x7f \\x0d\\n\\tWolke über Zürich \u96f2"
+        self.write_raw("a.raw", [2, 1, 1], "r", "float32", [1, 2], name=hostile, metadata={"key\x1bc": hostile})
+        plain = self.run_program("info", "a.raw").stdout.decode()
+        self.assertIn("name " + shown, plain)
+        self.assertIn("key\\x1bc " + shown, plain)
+        text = self.run_program("info", "a.raw", "--json").stdout.decode()
+        self.assertEqual(json.loads(text)["metadata"], {"key\x1bc": hostile})
+        for output in (plain, text):
+            self.assertFalse([c for c in output if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160)], output)
+        error = self.fail_with(1, "cannot read \\x1b[31mé.png: ", "info", "\x1b[31mé.png")
+        self.assertNotIn("\x1b", error)
+        bytes_alone = self.run_program("info", b"\x9b31m.png").stderr
+        self.assertTrue(bytes_alone.startswith(b"welkin: cannot read \\x9b31m.png"), bytes_alone)
+
     def test_volume_goes_round_every_kind(self):
         values = [(37 * i) % 251 for i in range(6 * 5 * 4)]
         self.write_raw("a.raw", [6, 5, 4], "l", "uint8", values, voxel_size_m=[20, 20, 10], first_voxel_m=[1, 2, 3],
