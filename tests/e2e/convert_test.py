@@ -6,7 +6,7 @@ import pathlib
 import struct
 import subprocess
 
-from welkin_program import PROGRAM, ProgramTest, main
+from welkin_program import CUMULUS, PROGRAM, TINY, ProgramTest, main
 
 DATA = pathlib.Path(__file__).resolve().parent.parent / "data" / "io"
 
@@ -29,6 +29,18 @@ class Convert(ProgramTest):
         for name, how in (("a.exr", []), ("a.hdr", []), ("a.png", ["--format", "rgb8"])):
             self.succeed("convert", "a.raw", name, *how)
             self.assertNotIn("meaning", self.info(name))
+        self.assertNotIn(b"sRGB", self.bytes_of("a.png"))
+        self.assertNotIn(b"cd/m2", self.bytes_of("a.hdr"))
+
+    def test_meaning_goes_along(self):
+        self.succeed("render", "-o", "a.png", *TINY, *CUMULUS)
+        self.succeed("render", "-o", "a.hdr", *TINY, *CUMULUS)
+        self.succeed("convert", "a.png", "b.png")
+        self.assertIn(b"sRGB\0", self.bytes_of("b.png"))
+        self.succeed("convert", "a.hdr", "b.exr")
+        self.succeed("convert", "b.exr", "c.hdr")
+        self.assertEqual([self.info(name)["meaning"] for name in ("b.png", "a.hdr", "b.exr", "c.hdr")],
+                         ["sRGB"] + 3 * ["linear Rec. 709, cd/m2"])
 
     def test_text_of_files_does_not_drive_the_terminal(self):
         hostile = "\x1b]0;title\x07 \x9b31m \x7f \r\n\tWolke über Zürich \u96f2"

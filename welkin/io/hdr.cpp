@@ -20,6 +20,7 @@
 namespace welkin::io {
 namespace {
 
+constexpr std::string_view kLuminanceLine = "# Values are luminance in cd/m2";
 using Rgbe = std::array<std::uint8_t, 4>;
 constexpr int kExponentBias = 128 + 8;                    // value = mantissa * 2^(exponent - bias)
 constexpr int kShortestCoded = 8, kLongestCoded = 32767;  // widths that the newer run-length code can hold
@@ -149,15 +150,17 @@ void readRow(Reader& in, std::vector<Rgbe>& row) {
 
 }  // namespace
 
-void writeHdr(const std::filesystem::path& path, const Image<float>& image) {
+void writeHdr(const std::filesystem::path& path, const Image<float>& image, bool luminance) {
   if (image.width < 1 || image.height < 1 || (image.channels != 3 && image.channels != 4))
     throw ParameterError("cannot write " + path.string() +
                          ": an HDR picture has at least one pixel and 3 channels");
   requireFinite(image);
   AtomicFile file(path);
-  file.write(
-      "#?RADIANCE\n# Values are luminance in cd/m2\nFORMAT=32-bit_rle_rgbe\n"
-      "PRIMARIES=0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\n\n");
+  file.write("#?RADIANCE\n");
+  if (luminance) file.write(std::string(kLuminanceLine) + "\n");
+  file.write("FORMAT=32-bit_rle_rgbe\n");
+  if (luminance) file.write("PRIMARIES=0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\n");
+  file.write("\n");
   file.write("-Y " + std::to_string(image.height) + " +X " + std::to_string(image.width) + "\n");
 
   const bool coded = image.width >= kShortestCoded && image.width <= kLongestCoded;
@@ -180,7 +183,7 @@ void writeHdr(const std::filesystem::path& path, const Image<float>& image) {
   file.commit();
 }
 
-Image<float> readHdr(const std::filesystem::path& path) {
+Image<float> readHdr(const std::filesystem::path& path, bool* luminance) {
   InputFile file(path);
   std::string bytes(file.size(), '\0');
   file.read(bytes.data(), bytes.size());
@@ -188,9 +191,11 @@ Image<float> readHdr(const std::filesystem::path& path) {
   if (!in.line().starts_with("#?")) in.fail("this is no Radiance picture");
   bool rgbe = false;
   double exposure = 1.0;
+  if (luminance) *luminance = false;
   for (std::string line = in.line(); !line.empty(); line = in.line()) {
     rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
     exposure *= exposureOf(in, line);
+    if (luminance) *luminance = *luminance || line == kLuminanceLine;
   }
   if (!(exposure > 0.0 && std::isfinite(exposure))) in.fail("EXPOSURE is beyond the range of numbers");
   if (!rgbe) in.fail("expected FORMAT=32-bit_rle_rgbe");

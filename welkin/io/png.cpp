@@ -57,6 +57,7 @@ void onFlush(png_structp) {}
 
 struct Picture {
   int width, height, channels, bits;
+  bool srgb = false;
   unsigned storedBits = 0;  // a pixel in the file
 };
 
@@ -73,7 +74,7 @@ bool encode(png_structp png, png_infop info, const Picture& picture, png_bytepp 
   png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height),
                picture.bits, kColourTypes[picture.channels - 1], PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (picture.srgb) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (textCount > 0) png_set_text(png, info, texts, textCount);
   png_write_info(png, info);
   if (picture.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
@@ -82,14 +83,41 @@ bool encode(png_structp png, png_infop info, const Picture& picture, png_bytepp 
   return true;
 }
 
+// Latin-1, which keywords and tEXt are, to UTF-8.
+std::string fromLatin(std::string_view latin) {
+  std::string text;
+  for (const char c : latin) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80) text += static_cast<char>(0xc0 | byte >> 6);
+    text += static_cast<char>(byte < 0x80 ? byte : 0x80 | (byte & 0x3f));
+  }
+  return text;
+}
+
+// Back; empty where UTF-8 has other characters.
+std::string toLatin(std::string_view text) {
+  std::string latin;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte < 0x80) {
+      latin += text[i];
+      continue;
+    }
+    if ((byte != 0xc2 && byte != 0xc3) || i + 1 == text.size() || (text[i + 1] & 0xc0) != 0x80) return {};
+    latin += static_cast<char>((byte & 3) << 6 | (text[++i] & 0x3f));
+  }
+  return latin;
+}
+
 // What libpng would shorten or write otherwise.
 void checkTexts(const std::filesystem::path& path, const PngTexts& texts) {
   constexpr std::size_t kLongestKeyword = 79;
   const auto isLatin = [](char c) { return (c >= ' ' && c <= '~') || static_cast<unsigned char>(c) > 0xa0; };
   for (const auto& [key, text] : texts) {
-    const bool good = !key.empty() && key.size() <= kLongestKeyword &&
-                      std::all_of(key.begin(), key.end(), isLatin) && key.front() != ' ' &&
-                      key.back() != ' ' && key.find("  ") == std::string::npos;
+    const std::string latin = toLatin(key);
+    const bool good = !latin.empty() && latin.size() <= kLongestKeyword &&
+                      std::all_of(latin.begin(), latin.end(), isLatin) && latin.front() != ' ' &&
+                      latin.back() != ' ' && latin.find("  ") == std::string::npos;
     if (!good)
       throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
     if (text.find('\0') != std::string::npos)
@@ -103,7 +131,7 @@ bool isAscii(const std::string& text) {
 }
 
 template <class T>
-void write(const std::filesystem::path& path, const Image<T>& image, const PngTexts& texts) {
+void write(const std::filesystem::path& path, const Image<T>& image, const PngTexts& texts, bool srgb) {
   if (image.width < 1 || image.height < 1 || image.channels < 1 || image.channels > 4)
     throw ParameterError("cannot write " + path.string() +
                          ": a PNG has at least one pixel and 1 to 4 channels");
@@ -116,11 +144,13 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   for (int y = 0; y < image.height; ++y)
     rows.push_back(reinterpret_cast<png_bytep>(const_cast<T*>(&image.data[image.index(0, y)])));
   std::vector<png_text> chunks;
+  std::vector<std::string> keys;
+  for (const auto& [key, text] : texts) keys.push_back(toLatin(key));
   for (const auto& [key, text] : texts) {
     png_text chunk{};
     const bool plain = isAscii(text);
     chunk.compression = plain ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
-    chunk.key = const_cast<char*>(key.c_str());
+    chunk.key = keys[chunks.size()].data();
     chunk.text = const_cast<char*>(text.c_str());
     (plain ? chunk.text_length : chunk.itxt_length) = text.size();
     chunks.push_back(chunk);
@@ -130,8 +160,9 @@ void write(const std::filesystem::path& path, const Image<T>& image, const PngTe
   if (!png) throw IoError("cannot write " + path.string() + ": libpng does not start");
   png_infop info = png_create_info_struct(png);
   png_set_write_fn(png, &sink, onWrite, onFlush);
-  const bool good = info && encode(png, info, {image.width, image.height, image.channels, int{8 * sizeof(T)}},
-                                   rows.data(), chunks.data(), static_cast<int>(chunks.size()));
+  const bool good =
+      info && encode(png, info, {image.width, image.height, image.channels, int{8 * sizeof(T)}, srgb},
+                     rows.data(), chunks.data(), static_cast<int>(chunks.size()));
   png_destroy_write_struct(&png, &info);
   if (sink.failure) std::rethrow_exception(sink.failure);
   if (!good) throw IoError("cannot write " + path.string() + ": " + trouble.message);
@@ -169,8 +200,11 @@ bool decodeHeader(png_structp png, png_infop info, std::FILE* file, Picture* pic
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
   *picture = {static_cast<int>(png_get_image_width(png, info)),
-              static_cast<int>(png_get_image_height(png, info)), png_get_channels(png, info),
-              png_get_bit_depth(png, info), storedBits};
+              static_cast<int>(png_get_image_height(png, info)),
+              png_get_channels(png, info),
+              png_get_bit_depth(png, info),
+              png_get_valid(png, info, PNG_INFO_sRGB) != 0,
+              storedBits};
   return true;
 }
 
@@ -195,14 +229,16 @@ bool readRows(png_structp png, png_infop info, const Picture& picture, PngImage&
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image, const PngTexts& texts) {
-  write(path, image, texts);
+void writePng(const std::filesystem::path& path, const Image<std::uint8_t>& image, const PngTexts& texts,
+              bool srgb) {
+  write(path, image, texts, srgb);
 }
-void writePng(const std::filesystem::path& path, const Image<std::uint16_t>& image, const PngTexts& texts) {
-  write(path, image, texts);
+void writePng(const std::filesystem::path& path, const Image<std::uint16_t>& image, const PngTexts& texts,
+              bool srgb) {
+  write(path, image, texts, srgb);
 }
 
-PngImage readPng(const std::filesystem::path& path, PngTexts* texts) {
+PngImage readPng(const std::filesystem::path& path, PngTexts* texts, bool* srgb) {
   const auto fail = [&](const std::string& why) {
     throw IoError("cannot read " + path.string() + ": " + why);
   };
@@ -235,7 +271,11 @@ PngImage readPng(const std::filesystem::path& path, PngTexts* texts) {
   if (!good) fail(trouble.message);
   png_textp found = nullptr;
   if (const int count = png_get_text(decoder.png, decoder.info, &found, nullptr); texts)
-    for (int i = 0; i < count; ++i) texts->emplace(found[i].key, found[i].text);
+    for (int i = 0; i < count; ++i) {
+      const bool latin = found[i].compression < PNG_ITXT_COMPRESSION_NONE;
+      texts->emplace(fromLatin(found[i].key), latin ? fromLatin(found[i].text) : found[i].text);
+    }
+  if (srgb) *srgb = picture.srgb;
   return image;
 }
 

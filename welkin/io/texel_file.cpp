@@ -22,6 +22,9 @@
 namespace welkin::io {
 namespace {
 
+// What headers of PNG and HDR say of their values stands in other kinds' metadata, by this key.
+constexpr const char *kMeaning = "welkin_meaning", *kSrgb = "sRGB", *kLuminance = "linear Rec. 709, cd/m2";
+
 constexpr std::array<Channels, 6> kAllChannels = {Channels::kL,  Channels::kR,   Channels::kA,
                                                   Channels::kLa, Channels::kRgb, Channels::kRgba};
 
@@ -66,14 +69,18 @@ class PictureWriter : public TexelWriter {
   }
 
  private:
+  bool means(std::string_view meaning) const {
+    const auto it = metadata_.find(kMeaning);
+    return it != metadata_.end() && it->second == meaning;
+  }
   template <class T>
   void writePicture(const Image<T>& picture) const {
-    writePng(path_, picture, metadata_);
+    writePng(path_, picture, metadata_, means(kSrgb));
   }
   void writePicture(const Image<float>& picture) const {
     if (kind_ == TexelFileKind::kHdr) {
       requirePositive(path_, picture, shape_);
-      writeHdr(path_, picture);
+      writeHdr(path_, picture, means(kLuminance));
     } else {
       const bool half = shape_.format.type == ValueType::kHalf;
       writeExr(path_, picture, {.depth = half ? ExrDepth::kHalf : ExrDepth::kFloat, .metadata = metadata_});
@@ -90,7 +97,9 @@ class PictureWriter : public TexelWriter {
 
 Texels readPngTexels(const std::filesystem::path& path) {
   PngTexts texts;
-  const PngImage png = readPng(path, &texts);
+  bool srgb = false;
+  const PngImage png = readPng(path, &texts, &srgb);
+  if (srgb) texts.emplace(kMeaning, kSrgb);
   constexpr std::array<Channels, 5> kByCount = {Channels::kL, Channels::kL, Channels::kLa, Channels::kRgb,
                                                 Channels::kRgba};
   Texels texels = std::visit(
@@ -100,6 +109,13 @@ Texels readPngTexels(const std::filesystem::path& path) {
       },
       png);
   texels.notes.metadata = std::move(texts);
+  return texels;
+}
+
+Texels readHdrTexels(const std::filesystem::path& path) {
+  bool luminance = false;
+  Texels texels = toTexels(readHdr(path, &luminance), {Channels::kRgb, ValueType::kFloat});
+  if (luminance) texels.notes.metadata.emplace(kMeaning, kLuminance);
   return texels;
 }
 
@@ -199,7 +215,7 @@ Texels readTexels(const std::filesystem::path& path) {
       requireFinite(texels, path);
       return texels;
     case TexelFileKind::kHdr:
-      return toTexels(readHdr(path), {Channels::kRgb, ValueType::kFloat});
+      return readHdrTexels(path);
     case TexelFileKind::kDds:
       return readDds(path);
     case TexelFileKind::kRaw:

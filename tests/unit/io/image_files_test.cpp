@@ -74,6 +74,35 @@ TEST_F(ImageFiles, PngKeepsTextsToTheByte) {
   EXPECT_EQ(found, texts);
 }
 
+// Keywords and tEXt are Latin-1 in the file.
+TEST_F(ImageFiles, PngTextsOfLatin1AreUtf8Here) {
+  const PngTexts texts = {{"Gr\u00f6\u00dfe", "plain"}};
+  writePng(folder / "a.png", Image<std::uint8_t>(2, 2, 1), texts);
+  const std::string bytes = contents(folder / "a.png");
+  EXPECT_NE(bytes.find(std::string("tEXtGr\xf6\xdf"
+                                   "e\0plain",
+                                   15)),
+            std::string::npos);
+  PngTexts found;
+  readPng(folder / "a.png", &found);
+  EXPECT_EQ(found, texts);
+  EXPECT_THROW(writePng(folder / "b.png", Image<std::uint8_t>(2, 2, 1), {{"\u96f2", "x"}}), ParameterError);
+}
+
+TEST_F(ImageFiles, HeadersSayWhatValuesMeanWhereThatIsKnown) {
+  for (const bool known : {false, true}) {
+    bool srgb = !known, luminance = !known;
+    writePng(folder / "a.png", Image<std::uint8_t>(2, 2, 1), {}, known);
+    readPng(folder / "a.png", nullptr, &srgb);
+    EXPECT_EQ(srgb, known);
+    EXPECT_EQ(contents(folder / "a.png").find("sRGB") != std::string::npos, known);
+    writeHdr(folder / "a.hdr", Image<float>(2, 2, 3), known);
+    readHdr(folder / "a.hdr", &luminance);
+    EXPECT_EQ(luminance, known);
+    EXPECT_EQ(contents(folder / "a.hdr").find("PRIMARIES") != std::string::npos, known);
+  }
+}
+
 TEST_F(ImageFiles, PngOfAnyWidth) {
   writePng(folder / "a.png", Image<std::uint8_t>(1000001, 1, 1));
   EXPECT_EQ(std::get<Image<std::uint8_t>>(readPng(folder / "a.png")).width, 1000001);
