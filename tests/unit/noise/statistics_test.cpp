@@ -150,6 +150,31 @@ TEST(Statistics, IntegersHoldCurlNoise) {
         }
 }
 
+// Points move at a cell a unit of time at most on each axis, and so does the distance to them; their
+// statistics are the same at every time.
+TEST(Statistics, CellularNoiseEvolvesWithoutJumpsOrDrift) {
+  for (const int dimensions : {2, 3})
+    for (const double time : {-3.2, 0.0, 0.37, 1.0, 17.3, 1e6}) {
+      NoiseParams p{
+          .kind = Kind::kCellular, .dimensions = dimensions, .frequency = glm::dvec3(32), .octaves = 1};
+      const glm::ivec3 size = dimensions == 2 ? glm::ivec3(256, 256, 1) : glm::ivec3(64);
+      p.time = time;
+      const std::vector<float> now = filled(p, size);
+      const Moments m = momentsOf(now);
+      EXPECT_NEAR(m.mean, dimensions == 2 ? 0.4296 : 0.5203, 0.01) << time;
+      EXPECT_NEAR(m.deviation, dimensions == 2 ? 0.1897 : 0.1723, 0.01) << time;
+      for (const double step : {0.1, 1e-3, 1e-5}) {
+        p.time = time + step;
+        const std::vector<float> then = filled(p, size);
+        double most = 0.0;
+        for (std::size_t i = 0; i < now.size(); ++i)
+          most = std::max(most, std::abs(static_cast<double>(now[i]) - static_cast<double>(then[i])));
+        EXPECT_LT(most, std::sqrt(dimensions) * step + 1e-6) << time;
+        EXPECT_GT(most, 0.5 * step) << time;
+      }
+    }
+}
+
 // The thesis's formula: clamp(sum a_o (n_o + 1) / 2).
 TEST(Statistics, TheThesissNormalisationIsItsFormula) {
   NoiseParams p{.frequency = {6, 6, 6}, .octaves = 6, .amplitude = 0.7};
