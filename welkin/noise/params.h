@@ -47,7 +47,7 @@ enum class Normalisation {
   kThesis,  // clamp(sum_o a_o (n_o + 1) / 2, 0, 1), every octave lifted to be positive; cells: clamp(v, 0, 1)
   kUnitRange,     // linear, so that the values the noise can take fill [0, 1]; never outside
   kUnitVariance,  // linear, to mean 0 and deviation 1 over the infinite lattice (not over one tile). With a
-                  // time: over all times, as a single one of them has up to 6 % less or 5 % more
+                  // time: over all times; a single one of them has up to 0.13 less or more
 };
 
 struct NoiseParams {
