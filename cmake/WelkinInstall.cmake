@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package and
-# the program's documentation.
+# What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package and the
+# program's documentation.
 include(CMakePackageConfigHelpers)
 
 # All folders at once.
@@ -9,13 +9,16 @@ add_library(welkin::welkin ALIAS welkin_all)
 set_target_properties(welkin_all PROPERTIES EXPORT_NAME welkin)
 list(TRANSFORM WELKIN_FOLDERS PREPEND welkin:: OUTPUT_VARIABLE folders)
 target_link_libraries(welkin_all INTERFACE ${folders})
-install(TARGETS welkin_all EXPORT welkin-targets)
+install(TARGETS welkin_all EXPORT welkin-welkin-targets)
 
-# The packages that the exported targets name, for find_dependency(). A target that is missing here makes tests/install fail.
-set(WELKIN_PACKAGES "Threads glm hwy Erfa OpenEXR PNG Epoxy")
-if(WELKIN_OPENVDB)
-  string(APPEND WELKIN_PACKAGES " Vdb")
-endif()
+# What a folder stands on and the packages that its exported target names, for welkin-config.cmake.
+set(WELKIN_COMPONENTS "")
+foreach(folder IN LISTS WELKIN_FOLDERS)
+  get_target_property(stands_on welkin_${folder} WELKIN_FOLDERS)
+  get_target_property(packages welkin_${folder} WELKIN_PACKAGES)
+  string(APPEND WELKIN_COMPONENTS
+    "set(welkin_folders_of_${folder} \"${stands_on}\")\nset(welkin_packages_of_${folder} \"${packages}\")\n")
+endforeach()
 
 # <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
 # common a name to stand in <prefix>/include itself.
@@ -35,5 +38,7 @@ install(FILES
   "${PROJECT_BINARY_DIR}/welkin-config.cmake" "${PROJECT_BINARY_DIR}/welkin-config-version.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/FindErfa.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindEpoxy.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindVdb.cmake"
   DESTINATION "${WELKIN_PACKAGE_DIR}")
-install(EXPORT welkin-targets NAMESPACE welkin:: DESTINATION "${WELKIN_PACKAGE_DIR}")
+foreach(folder IN LISTS WELKIN_FOLDERS ITEMS welkin)
+  install(EXPORT welkin-${folder}-targets NAMESPACE welkin:: DESTINATION "${WELKIN_PACKAGE_DIR}")
+endforeach()
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

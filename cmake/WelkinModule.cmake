@@ -56,7 +56,8 @@ function(welkin_precompile target kind)
 endfunction()
 
 # welkin_module(<folder> SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
-# makes the static library welkin_<folder>, known to others as welkin::<folder>.
+# makes the static library welkin_<folder>, known to others as welkin::<folder>. What an installed one needs stands in its properties
+# WELKIN_FOLDERS and WELKIN_PACKAGES: of a library Package::name, Package is what find_package() finds it by.
 function(welkin_module folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
   set(target welkin_${folder})
@@ -71,7 +72,15 @@ function(welkin_module folder)
     PRIVATE $<BUILD_INTERFACE:welkin_settings> ${ARG_PRIVATE_LIBS})
   target_compile_features(${target} PUBLIC cxx_std_20)
   welkin_precompile(${target} LIBRARY)
-  install(TARGETS ${target} EXPORT welkin-targets)
+  set(libs ${ARG_PUBLIC_LIBS} ${ARG_PRIVATE_LIBS})
+  list(FILTER libs EXCLUDE REGEX "BUILD_INTERFACE|^\\$<\\$<BOOL:(0|OFF|FALSE|NO)?>")
+  string(REGEX MATCHALL "[A-Za-z0-9_]+::" packages "${libs}")
+  list(TRANSFORM packages REPLACE "::" "")
+  list(TRANSFORM ARG_DEPENDS REPLACE "^welkin::" "" OUTPUT_VARIABLE folders)
+  set_target_properties(${target} PROPERTIES
+    WELKIN_FOLDERS "${folders}" WELKIN_PACKAGES "${packages}")
+  # An export for each, so that whoever wants one folder need not have what others use.
+  install(TARGETS ${target} EXPORT welkin-${folder}-targets)
 endfunction()
 
 # welkin_unit_test(<folder> SOURCES <files> [LIBS <targets>]) makes the GoogleTest program test_<folder>.

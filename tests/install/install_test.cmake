@@ -35,9 +35,15 @@ foreach(header IN LISTS headers)
 endforeach()
 file(WRITE "${WORK}/headers/all.cpp" "${all}${all}")
 
-run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/consumer" -B "${WORK}/build" -G "${GENERATOR}"
-  "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
-  "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DHEADER_SOURCES=${WORK}/headers")
-run("${CMAKE_COMMAND}" --build "${WORK}/build")
-run("${WORK}/build/consumer")
-run("${WORK}/build/consumer_of_all")
+# build(<project> <more arguments>)
+function(build project)
+  run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/${project}" -B "${WORK}/${project}" -G "${GENERATOR}"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
+    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" ${ARGN})
+  run("${CMAKE_COMMAND}" --build "${WORK}/${project}")
+endfunction()
+build(one_folder)
+run("${WORK}/one_folder/one_folder")
+build(consumer "-DHEADER_SOURCES=${WORK}/headers")
+run("${WORK}/consumer/consumer")
+run("${WORK}/consumer/consumer_of_all")
