@@ -2,6 +2,7 @@
 # What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package and the
 # program's documentation.
 include(CMakePackageConfigHelpers)
+include(WelkinHeaders)
 
 # All folders at once.
 add_library(welkin_all INTERFACE)
@@ -19,15 +20,6 @@ foreach(folder IN LISTS WELKIN_FOLDERS)
   string(APPEND WELKIN_COMPONENTS
     "set(welkin_folders_of_${folder} \"${stands_on}\")\nset(welkin_packages_of_${folder} \"${packages}\")\n")
 endforeach()
-
-# <prefix>/include/welkin is the include folder: some headers compile shader files as C++ ("shaders/lib/..."), and "shaders" is too
-# common a name to stand in <prefix>/include itself.
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/welkin" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin"
-  FILES_MATCHING PATTERN "*.h"
-  # Compiled once for each instruction set, inside one source; and what asks for a library that users need not have.
-  PATTERN "*-inl.h" EXCLUDE PATTERN "toml_reader.h" EXCLUDE PATTERN "sheet_reader.h" EXCLUDE)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders/lib" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/welkin/shaders"
-  FILES_MATCHING PATTERN "*.glsl")
 
 set(WELKIN_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/welkin")
 configure_package_config_file(

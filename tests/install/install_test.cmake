@@ -35,6 +35,16 @@ foreach(header IN LISTS headers)
 endforeach()
 file(WRITE "${WORK}/headers/all.cpp" "${all}${all}")
 
+# What the folders keep for themselves is not installed.
+foreach(own IN ITEMS fit/ball_system noise/fill reference/cloud_walks render/live_volumes scene/toml_reader shading/embedded_shaders)
+  if(NOT EXISTS "${SOURCE}/welkin/${own}.h" OR EXISTS "${include}/welkin/${own}.h")
+    message(FATAL_ERROR "welkin/${own}.h is installed, or is no more")
+  endif()
+endforeach()
+if(NOT EXISTS "${include}/shaders/lib/air_volume.glsl")
+  message(FATAL_ERROR "what engines include is not installed")
+endif()
+
 # build(<project> <more arguments>)
 function(build project)
   run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/${project}" -B "${WORK}/${project}" -G "${GENERATOR}"
