@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package and the
-# program's documentation.
+# What an installed Welkin consists of besides the libraries, which welkin_module() installs: the headers, the CMake package, files for
+# pkg-config and the program's documentation.
 include(CMakePackageConfigHelpers)
 include(WelkinHeaders)
+include(WelkinPkgConfig)
 
 # All folders at once.
 add_library(welkin_all INTERFACE)

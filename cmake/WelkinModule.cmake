@@ -57,7 +57,7 @@ endfunction()
 
 # welkin_module(<folder> SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
 # makes the static library welkin_<folder>, known to others as welkin::<folder>. What an installed one needs stands in its properties
-# WELKIN_FOLDERS and WELKIN_PACKAGES: of a library Package::name, Package is what find_package() finds it by.
+# WELKIN_FOLDERS, WELKIN_PACKAGES and WELKIN_SYSTEM_LIBS: of a library Package::name, Package is what find_package() finds it by.
 function(welkin_module folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
   set(target welkin_${folder})
@@ -76,9 +76,10 @@ function(welkin_module folder)
   list(FILTER libs EXCLUDE REGEX "BUILD_INTERFACE|^\\$<\\$<BOOL:(0|OFF|FALSE|NO)?>")
   string(REGEX MATCHALL "[A-Za-z0-9_]+::" packages "${libs}")
   list(TRANSFORM packages REPLACE "::" "")
+  list(FILTER libs INCLUDE REGEX "^[a-z0-9]+$")
   list(TRANSFORM ARG_DEPENDS REPLACE "^welkin::" "" OUTPUT_VARIABLE folders)
   set_target_properties(${target} PROPERTIES
-    WELKIN_FOLDERS "${folders}" WELKIN_PACKAGES "${packages}")
+    WELKIN_FOLDERS "${folders}" WELKIN_PACKAGES "${packages}" WELKIN_SYSTEM_LIBS "${libs}")
   # An export for each, so that whoever wants one folder need not have what others use.
   install(TARGETS ${target} EXPORT welkin-${folder}-targets)
 endfunction()
