@@ -63,8 +63,7 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
     upward_ = gpu::Texture3D(side, side, depth, {.format = gpu::Format::kRgba16F});
     for (gpu::Texture3D& v : volumes_) v = {};
   }
-  if (gpu::Texture3D& next = volumes_[1 - front_]; next.id() == 0)
-    next = gpu::Texture3D(side, side, depth, {.format = gpu::Format::kRgba16F});
+  makeNext();
   if (!same) {
     upOfBand_.clear();
     for (int b = 0; b < static_cast<int>(layout.bands.size()); ++b)
@@ -81,6 +80,12 @@ void LightVolumePass::begin(const shading::Uniforms& layers, const shading::Ligh
   step_ = 0;
   credit_ = 0.0f;
   if (steps() == 0) front_ = 1 - front_;  // a clear sky: nothing asks for the volume
+}
+
+void LightVolumePass::makeNext() {
+  if (gpu::Texture3D& next = volumes_[1 - front_]; next.id() == 0)
+    next =
+        gpu::Texture3D(upward_.width(), upward_.height(), upward_.depth(), {.format = gpu::Format::kRgba16F});
 }
 
 bool LightVolumePass::advance(int parts, const CloudTextures& clouds) {

@@ -37,6 +37,8 @@ class LightVolumePass {
   void begin(const shading::Uniforms& layers, const shading::LightVolumeLayout& layout,
              Spread spread = Spread::kYes);
   bool advance(int parts, const CloudTextures& clouds);  // about `parts` of kParts
+  // Makes room for the next volume beside the one that was swept, which begin() does otherwise.
+  void makeNext();
   bool inProgress() const { return step_ < steps(); }
   static constexpr int kParts = 256;
 

@@ -114,7 +114,11 @@ struct LiveSky::Impl {
   void updateBox(const scene::SkyBox& wanted, const Others& with);
   void updateAmbient();
   void lookFrom(const shading::ViewParts& view, unsigned number);
+  enum class Programs { kSeen, kAll };  // those that the instant and the view ask for, or any may
+  void draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options, Programs which);
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
+  void drawEveryBackdrop(const shading::ViewParts& view, const gpu::Target& target,
+                         const LiveOptions& options);
   void setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
                    const LiveOptions& options);
   void drawSheet(const ThinLayer& sheet, const shading::ViewParts& view, const gpu::Target& target,
@@ -123,7 +127,8 @@ struct LiveSky::Impl {
                   const LiveOptions& options);
   void drawSplats(const shading::View& view, const shading::ViewParts& parts, const gpu::Target& target,
                   const LiveOptions& options);
-  void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
+  void drawFlare(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options,
+                 Programs which);
   shading::SheetLook look(const ThinLayer& sheet, const shading::ViewParts& view) const {
     return shading::lookOf(sheet.sheet, sheet.matter, state->secondsAfter, view.eyeM,
                            state->lights[0].direction, view.pixelRad);
@@ -300,6 +305,16 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
   }
 }
 
+void LiveSky::Impl::drawEveryBackdrop(const shading::ViewParts& view, const gpu::Target& target,
+                                      const LiveOptions& options) {
+  drawBackdrop(view, target, options);
+  if (box) return;
+  for (gpu::Program& p : backdrops()) {
+    setBackdrop(p, view, target, options);
+    triangle.draw(p, target);
+  }
+}
+
 void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view, const gpu::Target& target,
                                 const LiveOptions& options) {
   p.set("uEarthRadiusM", static_cast<float>(state->clouds->earthRadiusM()));
@@ -335,11 +350,12 @@ void LiveSky::Impl::drawSheet(const ThinLayer& sheet, const shading::ViewParts& 
 }
 
 void LiveSky::Impl::drawFlare(const shading::ViewParts& view, const gpu::Target& target,
-                              const LiveOptions& options) {
+                              const LiveOptions& options, Programs which) {
   const sky::Body& sun = state->ephemeris.sun;
-  const shading::LensFlare flare =
+  shading::LensFlare flare =
       shading::lensFlareOf(view, glm::vec3(sun.direction), static_cast<float>(sun.angularRadiusRad),
                            shading::sunlightAt(*state, view.eyeM.z));
+  if (which == Programs::kAll) flare.shown = 1.0f;
   FlarePass::Before before;
   before.depth = options.depth;
   std::array<FlareSheet, FlarePass::kMaxFlat + FlarePass::kMaxVolumes> standing;
@@ -387,29 +403,46 @@ void LiveSky::Impl::drawSheets(const shading::View& view, const shading::ViewPar
   splatsIf(left);
 }
 
-void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
+void LiveSky::prepare(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
   Impl& m = *impl_;
   m.requireSky();
   if (target.area.width < 1 || target.area.height < 1) return;
   const gpu::StateGuard guard;
+  // Drawn beside the target all is as in a frame but for its pixels.
+  gpu::Tile beside = target.area;
+  beside.x = -beside.width;
+  m.draw(view, {target.framebuffer, beside}, options, Impl::Programs::kAll);
+  gpu::finish();
+}
+
+void LiveSky::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options) {
+  impl_->requireSky();
+  if (target.area.width < 1 || target.area.height < 1) return;
+  const gpu::StateGuard guard;
+  impl_->draw(view, target, options, Impl::Programs::kSeen);
+}
+
+void LiveSky::Impl::draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options,
+                         Programs which) {
   const shading::ViewParts parts = shading::partsOf(view, target.area.height);
-  m.lookFrom(parts, options.view);
-  if (m.others.splats) m.splats->lookFrom(*m.state, parts.eyeM);
-  if (m.others.volumes)
-    m.volumes->march(options.view, *m.state, m.sheets, *m.clouds, m.tables, parts, target.area.width,
-                     target.area.height);
-  if (options.backdrop) m.drawBackdrop(parts, target, options);
-  if (m.others.volumes) {
+  lookFrom(parts, options.view);
+  if (others.splats) splats->lookFrom(*state, parts.eyeM);
+  if (others.volumes)
+    volumes->march(options.view, *state, sheets, *clouds, tables, parts, target.area.width,
+                   target.area.height);
+  if (options.backdrop && which == Programs::kAll) drawEveryBackdrop(parts, target, options);
+  if (options.backdrop && which == Programs::kSeen) drawBackdrop(parts, target, options);
+  if (others.volumes) {
     // Whichever is nearer by the middle of its heights comes last.
     const auto away = [&](double heightM) { return std::abs(heightM - parts.eyeM.z); };
-    const bool before = m.others.splats && away(m.splats->heightM()) > away(m.volumes->heightM());
-    if (before) m.drawSplats(view, parts, target, options);
-    m.volumes->show(options.view, target, options.scale);
-    if (m.others.splats && !before) m.drawSplats(view, parts, target, options);
+    const bool before = others.splats && away(splats->heightM()) > away(volumes->heightM());
+    if (before) drawSplats(view, parts, target, options);
+    volumes->show(options.view, target, options.scale);
+    if (others.splats && !before) drawSplats(view, parts, target, options);
   } else {
-    m.drawSheets(view, parts, target, options);
+    drawSheets(view, parts, target, options);
   }
-  if (options.flare > 0.0f) m.drawFlare(parts, target, options);
+  if (options.flare > 0.0f) drawFlare(parts, target, options, which);
 }
 
 const AirVolume& LiveSky::airVolume(const shading::View& view, const AirVolumeOptions& options) {

@@ -2,18 +2,20 @@
 // A sky inside somebody's frame loop, thin sheets, marched volumes and clouds of metaballs:
 //
 //   LiveSky sky;                                    // with the engine's context current
+//   while loading:  sky.update(scene, seconds);     // or of buildSky(scene, seconds), from another thread
+//                   sky.prepare(view, {framebuffer, {0, 0, width, height}});
 //   every frame:  sky.update(scene, seconds);
 //                 for each view: sky.draw(view, {framebuffer, {0, 0, width, height}});
 //
 // No global state: several skies, several views a frame, several contexts may live side by side. What is
 // drawn depends on the scene, the seconds and the view alone, never on what was drawn before; with volumes,
 // it comes to that within some frames (render/live_volumes.h). The engine's OpenGL state is as it was after
-// every call. After the first two updates of a scene and a draw nothing is compiled, no OpenGL object is made
-// and no memory is allocated, and while time runs on no update takes much longer than others; but a view with
-// many more metaballs in it than any before makes room for them, and one with pixels of twice the angle or
-// more may sort the stars anew (sky/star_cells.h), some milliseconds, and where time jumps the cover of
-// volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some memory. Where
-// time or a view jumps, up to four tables of the air are made, some hundredths of a second each
+// every call. After the first two updates of a scene and a draw, or prepare(), nothing is compiled, no OpenGL
+// object is made and no memory is allocated, and while time runs on no update takes much longer than others;
+// but a view with many more metaballs in it than any before makes room for them, and one with pixels of twice
+// the angle or more may sort the stars anew (sky/star_cells.h), some milliseconds, and where time jumps the
+// cover of volumes is calibrated there (scene/cover_calibration.h), some hundredths of a second and some
+// memory. Where time or a view jumps, up to four tables of the air are made, some hundredths of a second each
 // (render/sky_table_keys.h); for the eye of view 0, which may climb or sink as aircraft do, they are ready
 // before it comes to their heights, for other views in time alone.
 //
@@ -62,6 +64,14 @@ class LiveSky {
   void update(const scene::Scene& scene, double secondsAfter);
   // The same of a sky that is there already.
   void update(const scene::SkyState& state);
+
+  // Does beforehand what the first draw() of a view in a scene, or of its size, does more than later ones:
+  // makes its textures, sweeps the light volume, and has the driver finish every program that draws into such
+  // a target, those of dusk and night and of the flare too. Then it waits for the device. The target, of the
+  // format and size to come, stays as it is. After update(); for each view, with the options to come. It
+  // takes as long as that first draw(); airVolume() is made ready by being called. Metaballs are as in
+  // draw(): where none is in view, the first that comes into it may take longer.
+  void prepare(const shading::View& view, const gpu::Target& target, const LiveOptions& options = {});
 
   // Draws all of it over the target, far to near, as linear Rec. 709; nothing where its area is empty, as a
   // minimised window's is. After update().

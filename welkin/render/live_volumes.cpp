@@ -179,6 +179,7 @@ void LiveVolumes::keepLight(const scene::SkyState& state, const CloudTextures& c
   constexpr int kParts = LightVolumePass::kParts;
   const int frames = kFramesOfSweep * layout_.columns / shading::LightVolumeLayout::kFewColumns;
   if (!lightVolume_.advance(atOnce ? kParts : kParts / frames, clouds) && lightVolume_.inProgress()) return;
+  lightVolume_.makeNext();
   light_ = sweeping_;
   sweeping_.reset();
   ++lightNumber_;
