@@ -18,7 +18,7 @@ set(WELKIN_PUBLIC_HEADERS
   reference/flip reference/picture_error reference/sky_film reference/sky_tracer reference/slab_tracer
   gpu/context gpu/draw gpu/framebuffer gpu/instances gpu/mesh gpu/program gpu/state_guard gpu/texture
   shading/shader_library shading/uniforms shading/view
-  render/air_volume render/display render/live_sky render/sky_renderer render/splat_pass)
+  render/air_volume render/display render/live_sky render/sky_light render/sky_renderer render/splat_pass)
 # And the shader files that are for engines.
 set(WELKIN_PUBLIC_SHADERS air_volume)
 

@@ -19,6 +19,7 @@
 #include "welkin/render/programs.h"
 #include "welkin/render/sheet_pass.h"
 #include "welkin/render/sky_box_texture.h"
+#include "welkin/render/sky_light_probe.h"
 #include "welkin/render/sky_textures.h"
 #include "welkin/render/thin_layer.h"
 #include "welkin/shading/backdrop_tiles.h"
@@ -90,6 +91,7 @@ struct LiveSky::Impl {
   std::vector<ThinLayer> sheets;        // from the ground up
   std::optional<LiveVolumes> volumes;   // once there are any, or an air volume
   std::optional<AirVolumePass> airPass;
+  std::optional<SkyLightProbe> probe;
   bool volumesKnow = false;          // the scene,
   bool airKnows = false;             // too
   std::optional<LiveSplats> splats;  // the same
@@ -116,6 +118,7 @@ struct LiveSky::Impl {
   void lookFrom(const shading::ViewParts& view, unsigned number);
   enum class Programs { kSeen, kAll };  // those that the instant and the view ask for, or any may
   void draw(const shading::View& view, const gpu::Target& target, const LiveOptions& options, Programs which);
+  void settle(const shading::View& view, const gpu::Target& target, unsigned number);
   void drawBackdrop(const shading::ViewParts& view, const gpu::Target& target, const LiveOptions& options);
   void drawEveryBackdrop(const shading::ViewParts& view, const gpu::Target& target,
                          const LiveOptions& options);
@@ -288,7 +291,7 @@ void LiveSky::Impl::drawBackdrop(const shading::ViewParts& view, const gpu::Targ
       view, target.area.width, target.area.height, state->clouds->earthRadiusM(),
       {shading::BackdropDisc{glm::vec3(sun.direction), shading::drawnSunRadius(state->ephemeris)},
        shading::BackdropDisc{glm::vec3(moon.direction), static_cast<float>(moon.angularRadiusRad)}},
-      state->scene.output.sunDisc);
+      state->scene.output.sunDisc && options.discs);
   tables.makeStars(*state, view.pixelRad);
   const bool beyond = SkyTextures::isAnythingBeyond(*state, view.pixelRad, view.eyeM.z);
   using shading::BackdropKind;
@@ -323,6 +326,7 @@ void LiveSky::Impl::setBackdrop(gpu::Program& p, const shading::ViewParts& view,
   p.set("uViewportPx", glm::vec4(target.area.x, target.area.y, target.area.width, target.area.height));
   p.set("uPixelRad", view.pixelRad);
   p.set("uScale", options.scale);
+  p.set("uDiscs", state->scene.output.sunDisc && options.discs ? 1.0f : 0.0f);
   tables.bind(p);
   tables.bindStars(p, *state, view.pixelRad, view.eyeM.z);
   clouds->bind(p);
@@ -443,6 +447,54 @@ void LiveSky::Impl::draw(const shading::View& view, const gpu::Target& target, c
     drawSheets(view, parts, target, options);
   }
   if (options.flare > 0.0f) drawFlare(parts, target, options, which);
+}
+
+// All pixels of the volumes of a small picture at once, which frames would come to in a round.
+void LiveSky::Impl::settle(const shading::View& view, const gpu::Target& target, unsigned number) {
+  if (!others.volumes) return;
+  const shading::ViewParts parts = shading::partsOf(view, target.area.height);
+  lookFrom(parts, number);
+  for (int frame = 1; frame < LiveVolumes::kFramesInRound; ++frame)
+    volumes->march(number, *state, sheets, *clouds, tables, parts, target.area.width, target.area.height);
+}
+
+SkyLight LiveSky::light(const glm::dvec3& eyeM) {
+  Impl& m = *impl_;
+  m.requireSky();
+  const gpu::StateGuard guard;
+  // Pixels as large as a few degrees blur the patterns of sheets, which changes their mean; volumes are slow.
+  constexpr int kFine = 128, kCoarse = 32;
+  const int side = m.others.volumes ? kCoarse : kFine;
+  if (!m.probe || m.probe->side() != side) m.probe.emplace(side);
+  SkyLight light;
+  const auto drawn = [&](const shading::View& view, const gpu::Target& target, LiveOptions options,
+                         int picture) {
+    options.view = kLightViews + static_cast<unsigned>(picture);
+    m.settle(view, target, options.view);
+    m.draw(view, target, options, Impl::Programs::kSeen);
+  };
+  light.luminance =
+      m.probe->luminance(eyeM, [&](const shading::View& view, const gpu::Target& target, int picture) {
+        drawn(view, target, {.discs = false}, picture);
+      });
+  const auto clouds = [&](const shading::View& view, const gpu::Target& target, int picture) {
+    drawn(view, target, {.backdrop = false}, picture);
+  };
+  const scene::SkyState& s = *m.state;
+  const auto direct = [&](const sky::Light& from, const sky::Body& body, int picture) {
+    DirectLight to;
+    to.direction = from.direction;
+    to.overClouds = from.illuminance * s.atmosphere->transmittanceToSpace(
+                                           s.atmosphere->groundAltitudeM() + eyeM.z, from.direction.z);
+    if (to.overClouds != glm::vec3(0.0f))
+      to.throughClouds = m.probe->through(eyeM, from.direction, static_cast<float>(body.angularRadiusRad),
+                                          SkyLightProbe::kFaces + picture, clouds);
+    to.illuminance = to.throughClouds * to.overClouds;
+    return to;
+  };
+  light.sun = direct(sky::sunLight(s.ephemeris), s.ephemeris.sun, 0);
+  light.moon = direct(sky::moonLight(s.ephemeris), s.ephemeris.moon, 1);
+  return light;
 }
 
 const AirVolume& LiveSky::airVolume(const shading::View& view, const AirVolumeOptions& options) {

@@ -34,6 +34,7 @@
 #include "welkin/gpu/draw.h"
 #include "welkin/render/air_volume.h"
 #include "welkin/render/flare_pass.h"
+#include "welkin/render/sky_light.h"
 #include "welkin/scene/sky_state.h"
 #include "welkin/shading/view.h"
 
@@ -43,6 +44,8 @@ struct LiveOptions {
   float scale = 1.0f;  // written for each cd/m2: 1 into float targets, an exposure into others. Linear; into
                        // sRGB targets with GL_FRAMEBUFFER_SRGB, as the engine has it set
   bool backdrop = true;  // clear sky, discs of sun and moon, ground; else only the clouds, over what is there
+  bool discs = true;     // of sun and moon, where the scene has them: pictures that light things beside these
+                         // two as lights are without
   float flare = 0.0f;    // share of the sun's light that a lens scatters into a glow and ghosts; 0: none
   EngineDepth depth{};   // of what hides the sun from the flare, and metaballs
   unsigned view = 0;     // number of the view, where several are drawn in a frame: volumes remember each
@@ -83,6 +86,15 @@ class LiveSky {
   // size make no OpenGL objects. Clouds are lit as in the last draw() of view 0, where that was near.
   // Throws ParameterError for sizes, distances or a scale out of range, GpuError.
   const AirVolume& airVolume(const shading::View& view, const AirVolumeOptions& options = {});
+
+  // The light at a place in the world, m, for what the engine draws there (render/sky_light.h): sun and moon
+  // through air and clouds, and the rest by its coefficients. As all is drawn: in eight small pictures from
+  // there, which are read back. So it waits for the device, takes about as long as a frame, and is for once
+  // in a while; the first call in a scene makes what a first draw() does. In a sky with volumes it comes out
+  // a little otherwise by what was asked before from nearby. After update(). Views from kLightViews on are
+  // its.
+  static constexpr unsigned kLightViews = 1000;
+  SkyLight light(const glm::dvec3& eyeM);
 
   const scene::SkyState& state() const;
 
