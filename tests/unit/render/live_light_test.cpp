@@ -200,11 +200,17 @@ TEST_F(LiveLightTest, ClosedDecksHideTheSunAndBrokenOnesHereAndThere) {
   EXPECT_GT(closed.illuminance({0, 0, 1}).y, 1000.0f);
   sky.update(cloudyScene(60.0, {Genus::kCumulus}, 4.0), 0.0);
   int open = 0, shaded = 0;
+  float off = 0.0f;
   for (int i = 0; i < 24; ++i) {
-    const float through = sky.light({1300.0 * (i % 6), 1300.0 * (i / 6), 2.0}).sun.throughClouds;
+    const glm::dvec3 at(1300.0 * (i % 6), 1300.0 * (i / 6), 2.0);
+    const SkyLight light = sky.light(at);
+    const float through = light.sun.throughClouds;
+    const float depth = sky.state().clouds->opticalDepth(glm::vec3(at), light.sun.direction, 1e9f);
+    off += std::abs(through - std::exp(-depth)) / 24.0f;
     open += through > 0.9f ? 1 : 0;
     shaded += through < 0.1f ? 1 : 0;
   }
+  EXPECT_LT(off, 0.05f);  // from the field, point by point
   EXPECT_GE(open, 4);
   EXPECT_GE(shaded, 4);
   EXPECT_GE(open + shaded, 16);
