@@ -16,12 +16,15 @@ namespace welkin::scene {
 namespace {
 
 constexpr double kFlatBelowM = 600.0;  // layers thinner than that have flat clouds
-constexpr double kCellShare = 0.75;    // of the widest cloud
-constexpr double kLeastSize = 0.5;     // of the largest cloud
+constexpr double kCellShare = 0.66;    // of the widest cloud
+constexpr double kLeastSize = 0.3;     // of the largest cloud
 constexpr double kReach = 45.0;        // widths of the widest cloud
 constexpr double kLeastReachM = 10000.0, kMostReachM = 45000.0;
 constexpr double kFarBases = 20.0;                           // heights of the base, of layers that cover more
 constexpr double kClosest = 0.4;                             // of the cells' size
+constexpr std::int64_t kGroup = 5;                           // cells along the side of a group's square
+constexpr double kPull = 0.9;                                // the most, of the way to the group's middle
+constexpr double kLong = 0.5;                                // of that, what is not gone along the group
 constexpr double kMostClouds = 30000.0, kMostFar = 14000.0;  // where they stand closer, and else
 constexpr double kClosed = 0.97;                             // share of the sky that is as good as all of it
 constexpr double kMuch = 3.0;                                // of fill()
@@ -37,6 +40,29 @@ double widestM(const weather::Layer& layer, const std::vector<LibraryCloud>& lib
 
 const std::vector<LibraryCloud>& libraryOf(bool flat) {
   return flat ? flatCumulus() : cumulusTowers();
+}
+
+std::int64_t groupOf(std::int64_t cell) {
+  return cell >= 0 ? cell / kGroup : -((kGroup - 1 - cell) / kGroup);
+}
+
+// Where clouds gather, in cells, and how large they are there.
+struct Group {
+  glm::dvec2 middle{0.0};
+  double vigour = 0.0;         // [0, 1]
+  glm::dvec2 along{1.0, 0.0};  // unit; they are longer than broad
+
+  // Of a place drawn to the middle by a share of the way.
+  glm::dvec2 drawn(const glm::dvec2& at, double share) const {
+    const glm::dvec2 away = at - middle;
+    return middle + (1.0 - share) * away + (kLong * share * glm::dot(away, along)) * along;
+  }
+};
+Group groupAt(std::uint64_t seed, std::int64_t i, std::int64_t j) {
+  Random random(hashOf(seed, 0x67726f7570, i, j));
+  const double x = static_cast<double>(i) + random.uniform(), y = static_cast<double>(j) + random.uniform();
+  const double vigour = random.uniform(), angle = 2.0 * kPi * random.uniform();
+  return {static_cast<double>(kGroup) * glm::dvec2(x, y), vigour, {std::cos(angle), std::sin(angle)}};
 }
 
 }  // namespace
@@ -79,6 +105,7 @@ void MetaballLayer::fill(double much) {
   const double larger = std::clamp(much - 1.0, 0.0, 1.0), closer = std::clamp(much - 2.0, 0.0, 1.0);
   threshold_ = std::min(much, 1.0) / (1.0 - kYoung);  // at 1 every cloud is grown up
   leastSize_ = glm::mix(kLeastSize, 1.0, larger);
+  pull_ = kPull * (1.0 - larger);
   const double widthM = widestM(layer_, library());
   cellM_ = kCellShare * widthM;
   const auto reachOf = [&](double clouds) { return cellM_ * std::sqrt(clouds / kPi); };
@@ -100,20 +127,25 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
   const double widthM = widestM(layer_, library());
   const glm::dvec2 middle = (eyeM - driftedM) / cellM_;
   const double reach = reachM_ / cellM_;
-  for (auto j = static_cast<std::int64_t>(std::floor(middle.y - reach)); j <= middle.y + reach; ++j)
-    for (auto i = static_cast<std::int64_t>(std::floor(middle.x - reach)); i <= middle.x + reach; ++i) {
+  // Of cells whose clouds may be drawn in.
+  const double seek = reach + static_cast<double>(kGroup) * pull_;
+  const auto from = [&](double at) { return static_cast<std::int64_t>(std::floor(at - seek)); };
+  for (std::int64_t j = from(middle.y); static_cast<double>(j) <= middle.y + seek; ++j)
+    for (std::int64_t i = from(middle.x); static_cast<double>(i) <= middle.x + seek; ++i) {
       Random random(hashOf(seed_, 0x6c61, i, j));
-      const double x = static_cast<double>(i) + random.uniform(),
-                   y = static_cast<double>(j) + random.uniform();
+      glm::dvec2 at(static_cast<double>(i) + random.uniform(), static_cast<double>(j) + random.uniform());
+      const Group group = groupAt(seed_, groupOf(i), groupOf(j));
+      // Some all the way, others hardly.
+      at = group.drawn(at, pull_ * (0.6 + 0.4 * group.vigour) * random.uniform());
       // Up and down again, at a pace of its own.
       const double cycles = secondsAfter / kCycleS * (0.7 + 0.6 * random.uniform()) + random.uniform();
       const double rank = std::abs(2.0 * (cycles - std::floor(cycles)) - 1.0);
       const double age = (threshold_ - rank) / (kYoung * threshold_);
-      if (age <= 0.0 || std::hypot(x - middle.x, y - middle.y) > reach) continue;
+      if (age <= 0.0 || glm::length(at - middle) > reach) continue;
       Cloud cloud;
-      cloud.baseM = {x * cellM_ + driftedM.x, y * cellM_ + driftedM.y, layer_.baseM};
-      // Many small ones for each large one.
-      const double u = random.uniform();
+      cloud.baseM = {at.x * cellM_ + driftedM.x, at.y * cellM_ + driftedM.y, layer_.baseM};
+      // Many small ones for each large one, of which most stand together.
+      const double u = random.uniform() * (0.45 + 0.65 * group.vigour);
       cloud.widthM =
           widthM * (leastSize_ + (1.0 - leastSize_) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
       cloud.turnRad = 2.0 * kPi * random.uniform();

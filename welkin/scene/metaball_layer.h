@@ -2,6 +2,8 @@
 // A layer of the weather as metaballs: clouds of a small library (cumulus_library.h), each turned, sized and
 // placed by hashes of its cell in an endless lattice that drifts with the layer's wind.
 //
+// Clouds of a few cells each stand together in groups, most of the large ones in some of them.
+//
 // Every cell has a rank in [0, 1] and the cells whose rank is below a threshold have a cloud, the larger and
 // denser the further below. The threshold is where the sky's measured cover is what was asked for; where all
 // cells have a cloud by then, clouds are larger, reach farther out and stand closer, as far as it takes. In
@@ -52,7 +54,7 @@ class MetaballLayer {
   double earthRadiusM_;
   bool flat_;
   std::optional<double> mostOktas_;
-  double threshold_ = 0.0, leastSize_ = 1.0, cellM_ = 1.0, reachM_ = 0.0;
+  double threshold_ = 0.0, leastSize_ = 1.0, cellM_ = 1.0, reachM_ = 0.0, pull_ = 0.0;
 };
 
 // From distances along the ground about the eye and height over it to the tangent plane.

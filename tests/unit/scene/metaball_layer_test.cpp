@@ -10,6 +10,7 @@
 #include "tests/testing/skies.h"
 #include "welkin/core/parallel.h"
 #include "welkin/scene/cumulus_library.h"
+#include "welkin/scene/metaball_layer.h"
 #include "welkin/scene/metaballs.h"
 #include "welkin/scene/sky_state.h"
 
@@ -69,6 +70,33 @@ TEST(MetaballLayer, DeliversTheCoverAskedFor) {
     EXPECT_EQ(state.cover.at(0).requestedOktas, oktas);
   }
   EXPECT_TRUE(ballsOf(buildSky(heaps(0.0), 0.0), 0.0).balls.empty());
+}
+
+// Clouds stand in groups and differ in size: were each anywhere by itself, numbers in equal squares would
+// vary as much as they are large, and of a lattice less.
+TEST(MetaballLayer, CloudsStandInGroups) {
+  const SkyState state = buildSky(heaps(3.0), 0.0);
+  const MetaballLayer layer(state.weather.layers[0], 5, state.clouds->earthRadiusM());
+  std::vector<MetaballLayer::Cloud> clouds;
+  layer.cloudsAt(0.0, glm::dvec2(0.0), glm::dvec2(0.0), clouds);
+  double widest = 0.0, sum = 0.0, squares = 0.0;
+  for (const auto& cloud : clouds) {
+    widest = std::max(widest, cloud.widthM);
+    sum += cloud.widthM, squares += cloud.widthM * cloud.widthM;
+  }
+  const auto all = static_cast<double>(clouds.size());
+  EXPECT_GT(squares * all / (sum * sum), 1.15);
+  constexpr int kSide = 24;
+  std::vector<double> inSquare(kSide * kSide);
+  for (const auto& cloud : clouds) {
+    const glm::dvec2 at = glm::floor(glm::dvec2(cloud.baseM) / widest) + 0.5 * kSide;
+    if (at.x >= 0.0 && at.y >= 0.0 && at.x < kSide && at.y < kSide)
+      inSquare[static_cast<std::size_t>(at.y * kSide + at.x)] += 1.0;
+  }
+  double number = 0.0, numberSquares = 0.0;
+  for (const double n : inSquare) number += n, numberSquares += n * n;
+  const double mean = number / (kSide * kSide);
+  EXPECT_GT((numberSquares / (kSide * kSide) - mean * mean) / mean, 1.2);
 }
 
 // Where grown-up clouds in all cells are too few, they become larger and stand closer.
