@@ -73,6 +73,12 @@ constexpr std::array<Habit, 11> kHabits = {{
 // Deep cumulus: towers that are broad below, with turrets above.
 constexpr Habit kCongestus = {1.7, 700, 9000, 20000, .78, .25, .40, .10, 1.0, 1.9, 2.0, 1.85, -.10, 0,  .05,
                               .05, .28, 250,  2000,  .54, .25, 1.0, 1.0, 115, .10, .18, .75,  .15,  1.2};
+// What is left of nimbostratus that is broken: torn patches that thin out upwards, not blocks of a deck.
+constexpr Habit kBrokenRainClouds = {1.2, 3000, 9000, 16000, .15, .90, .45, .60, 1.8,  3.2,
+                                     0,   1.1,  .25,  0,     .12, .25, .30, 400, 1200, .55,
+                                     .70, 1.8,  0.6,  140,   .22, 1.3, .20, .60, .4};
+constexpr double kDeckOktas = 7.5, kBrokenOktas = 4.5;  // of either
+
 constexpr double kMediocrisM = 1000.0, kCongestusM = 2000.0;  // depths of either
 
 Habit mixed(const Habit& a, const Habit& b, double share) {
@@ -83,9 +89,13 @@ Habit mixed(const Habit& a, const Habit& b, double share) {
   return std::bit_cast<Habit>(numbers);
 }
 
-Habit habitOf(weather::Genus genus, double depthM) {
-  const Habit& habit = kHabits[static_cast<std::size_t>(genus)];
-  if (genus != weather::Genus::kCumulus) return habit;
+Habit habitOf(const weather::Layer& layer) {
+  const double depthM = layer.topM - layer.baseM;
+  const Habit& habit = kHabits[static_cast<std::size_t>(layer.genus)];
+  if (layer.genus == weather::Genus::kNimbostratus)
+    return mixed(habit, kBrokenRainClouds,
+                 std::clamp((kDeckOktas - layer.oktas) / (kDeckOktas - kBrokenOktas), 0.0, 1.0));
+  if (layer.genus != weather::Genus::kCumulus) return habit;
   return mixed(habit, kCongestus, std::clamp((depthM - kMediocrisM) / (kCongestusM - kMediocrisM), 0.0, 1.0));
 }
 
@@ -119,7 +129,7 @@ glm::vec3 noiseShiftM(const weather::Layer& layer, double lag, double riseMps, f
 
 field::CloudLayer shapeOf(const weather::Layer& layer, std::uint64_t seed, double secondsAfter) {
   const double depth = layer.topM - layer.baseM;
-  const Habit habit = habitOf(layer.genus, depth);
+  const Habit habit = habitOf(layer);
   const double spacing = spacingOf(layer);
   const double cell = spacing * std::clamp(habit.cell * depth, habit.cellMinM, habit.cellMaxM);
   const double blob = std::clamp(habit.blob * depth, habit.blobMinM, habit.blobMaxM);

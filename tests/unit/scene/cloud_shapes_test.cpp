@@ -200,6 +200,13 @@ TEST(CloudShapes, CoveredSkiesAreNotPlanesFromAbove) {
   }
 }
 
+// Broken nimbostratus is patches that taper, not blocks of a deck with lids on; a closed one is as it was.
+TEST(CloudShapes, BrokenRainCloudsTaper) {
+  const Shape broken(Genus::kNimbostratus, 2500, 3);
+  EXPECT_LT(broken.share(0.7), 0.25 * broken.share(0.2));
+  EXPECT_GT(Shape(Genus::kNimbostratus, 2500, 8).share(0.7), 0.5);
+}
+
 TEST(CloudShapes, CellsOfAltocumulusAreFlat) {
   const Shape cells(Genus::kAltocumulus, 500.0, 4.0);
   EXPECT_GT(cells.levelM(), 2.5 * cells.uprightM());
