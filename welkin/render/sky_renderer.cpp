@@ -148,7 +148,11 @@ gpu::Program& SkyRenderer::Impl::programFor(const scene::SkyState& state,
   shading::ShaderDefines defines =
       sheets.empty() ? shading::marchDefines(layout, eyeM) : sheets.defines(layout, eyeM);
   if (transmittance) defines.emplace_back("WELKIN_TRANSMITTANCE", "1");
-  if (settings.cascadesBlended) defines.emplace_back("WELKIN_CASCADES_BLENDED", "1");
+  // Long lenses see so far through the air that few places on the way show as a hatching.
+  if (settings.cascadesBlended) {
+    defines.emplace_back("WELKIN_CASCADES_BLENDED", "1");
+    defines.emplace_back("WELKIN_AIR_SAMPLES", "64");
+  }
   if (box) defines.emplace_back("WELKIN_SKY_BOX", "1");
   if (!splats.empty()) SkySplats::addDefines(defines);
   shading::addPhaseDefines(state, defines);

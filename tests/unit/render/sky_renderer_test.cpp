@@ -250,6 +250,21 @@ TEST_F(Sky, NoGrainAtMedium) {
   EXPECT_LT(grain(drawn(s), converged), 0.005);
 }
 
+// A long lens sees many shadows in the air one behind the other.
+TEST_F(Sky, NoGrainInTheAirOfLongLenses) {
+  scene::Scene s = sized(cloudyScene(45.0, {Genus::kCumulus}, 2.0), 96, 54);
+  s.time = parseUtcTime("2026-06-21T05:10:00Z");
+  s.seed = 4;
+  s.place = {.latitudeDeg = 45.0, .longitudeDeg = 0.0, .altitudeM = 0.0};
+  s.camera.headingDeg = 71.7;
+  s.camera.pitchDeg = 0.9;
+  s.camera.fovDeg = 0.75;
+  s.output.quality = scene::Quality::kUltra;
+  const Image<float> converged = drawn(s);
+  s.output.quality = scene::Quality::kMedium;
+  EXPECT_LT(grain(drawn(s), converged), 0.005);
+}
+
 TEST_F(Sky, ProgressGrowsToOneAndCanStopTheDrawing) {
   const scene::Scene overcast = sized(cloudyScene(45.0, {Genus::kStratus}, 8.0), 96, 64);
   for (const scene::Scene& s : {overcast, clearScene(45.0)}) {
