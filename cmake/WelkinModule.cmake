@@ -20,15 +20,23 @@ set(WELKIN_PRECOMPILE "" CACHE STRING "Sources that share precompiled headers: L
 # What is compiled often and hardly computes anything itself need not be made fast as the library is. After all other flags.
 set(WELKIN_PROGRAM_FLAGS "" CACHE STRING "More compiler flags for the sources of the program")
 set(WELKIN_TEST_FLAGS "" CACHE STRING "More compiler flags for the sources of the tests")
+set(WELKIN_DRAWING_FLAGS "" CACHE STRING "More compiler flags for what draws by OpenGL, library and tests")
 
-# welkin_flags(<target> PROGRAM|TEST) gives the target's own sources the flags of their kind.
+# Sources are of the kinds LIBRARY, PROGRAM and TEST; those that draw of the kinds DRAWING_LIBRARY and DRAWING_TEST.
+
+# welkin_flags(<target> <kind>) gives the target's own sources the flags of their kind.
 function(welkin_flags target kind)
-  target_compile_options(${target} PRIVATE ${WELKIN_${kind}_FLAGS})
+  string(REPLACE "DRAWING_" "" base ${kind})
+  target_compile_options(${target} PRIVATE ${WELKIN_${base}_FLAGS})
+  if(NOT base STREQUAL kind)
+    target_compile_options(${target} PRIVATE ${WELKIN_DRAWING_FLAGS})
+  endif()
 endfunction()
 
-# welkin_precompile(<target> LIBRARY|PROGRAM|TEST) lets the target use them where they are wanted.
+# welkin_precompile(<target> <kind>) lets the target use them where they are wanted.
 function(welkin_precompile target kind)
-  if(NOT kind IN_LIST WELKIN_PRECOMPILE AND NOT (kind STREQUAL "TEST" AND "GTEST" IN_LIST WELKIN_PRECOMPILE))
+  string(REPLACE "DRAWING_" "" base ${kind})
+  if(NOT base IN_LIST WELKIN_PRECOMPILE AND NOT (base STREQUAL "TEST" AND "GTEST" IN_LIST WELKIN_PRECOMPILE))
     return()
   endif()
   string(TOLOWER "welkin_${kind}_headers" owner)
@@ -38,15 +46,15 @@ function(welkin_precompile target kind)
     file(GENERATE OUTPUT "${PROJECT_BINARY_DIR}/${owner}.cpp" CONTENT "")
     add_library(${owner} OBJECT "${PROJECT_BINARY_DIR}/${owner}.cpp")
     target_link_libraries(${owner} PRIVATE welkin_settings glm::glm Threads::Threads)
-    if(kind IN_LIST WELKIN_PRECOMPILE)
+    if(base IN_LIST WELKIN_PRECOMPILE)
       target_precompile_headers(${owner} PRIVATE
         <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <string> <string_view> <vector>
         <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp>)
     endif()
     welkin_flags(${owner} ${kind})
-    if(kind STREQUAL "LIBRARY")
+    if(base STREQUAL "LIBRARY")
       set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    elseif(kind STREQUAL "TEST")
+    elseif(base STREQUAL "TEST")
       find_package(GTest REQUIRED)
       target_link_libraries(${owner} PRIVATE GTest::gtest)
       target_precompile_headers(${owner} PRIVATE <gtest/gtest.h>)
@@ -55,11 +63,11 @@ function(welkin_precompile target kind)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# welkin_module(<folder> SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
+# welkin_module(<folder> [DRAWS] SOURCES <files> [DEPENDS <welkin folders>] [PUBLIC_LIBS <targets>] [PRIVATE_LIBS <targets>])
 # makes the static library welkin_<folder>, known to others as welkin::<folder>. What an installed one needs stands in its properties
 # WELKIN_FOLDERS, WELKIN_PACKAGES and WELKIN_SYSTEM_LIBS: of a library Package::name, Package is what find_package() finds it by.
 function(welkin_module folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "DRAWS" "" "SOURCES;DEPENDS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
   set(target welkin_${folder})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(welkin::${folder} ALIAS ${target})
@@ -71,7 +79,13 @@ function(welkin_module folder)
     PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC_LIBS}
     PRIVATE $<BUILD_INTERFACE:welkin_settings> ${ARG_PRIVATE_LIBS})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  welkin_precompile(${target} LIBRARY)
+  if(ARG_DRAWS)
+    set(kind DRAWING_LIBRARY)
+  else()
+    set(kind LIBRARY)
+  endif()
+  welkin_flags(${target} ${kind})
+  welkin_precompile(${target} ${kind})
   set(libs ${ARG_PUBLIC_LIBS} ${ARG_PRIVATE_LIBS})
   list(FILTER libs EXCLUDE REGEX "BUILD_INTERFACE|^\\$<\\$<BOOL:(0|OFF|FALSE|NO)?>")
   string(REGEX MATCHALL "[A-Za-z0-9_]+::" packages "${libs}")
@@ -84,15 +98,20 @@ function(welkin_module folder)
   install(TARGETS ${target} EXPORT welkin-${folder}-targets)
 endfunction()
 
-# welkin_unit_test(<folder> SOURCES <files> [LIBS <targets>]) makes the GoogleTest program test_<folder>.
+# welkin_unit_test(<folder> [DRAWS] SOURCES <files> [LIBS <targets>]) makes the GoogleTest program test_<folder>.
 # WELKIN_TEST_DATA_DIR is the absolute path of tests/data.
 function(welkin_unit_test folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "DRAWS" "" "SOURCES;LIBS" ${ARGN})
   add_executable(test_${folder} ${ARG_SOURCES})
   target_link_libraries(test_${folder} PRIVATE welkin::${folder} ${ARG_LIBS} welkin_settings GTest::gtest_main)
   target_compile_definitions(test_${folder} PRIVATE
     WELKIN_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data")
-  welkin_flags(test_${folder} TEST)
-  welkin_precompile(test_${folder} TEST)
+  if(ARG_DRAWS)
+    set(kind DRAWING_TEST)
+  else()
+    set(kind TEST)
+  endif()
+  welkin_flags(test_${folder} ${kind})
+  welkin_precompile(test_${folder} ${kind})
   gtest_discover_tests(test_${folder} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}/" PROPERTIES LABELS unit TIMEOUT 300)
 endfunction()

@@ -133,7 +133,7 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
   for (std::int64_t j = from(middle.y); static_cast<double>(j) <= middle.y + seek; ++j)
     for (std::int64_t i = from(middle.x); static_cast<double>(i) <= middle.x + seek; ++i) {
       Random random(hashOf(seed_, 0x6c61, i, j));
-      glm::dvec2 at(static_cast<double>(i) + random.uniform(), static_cast<double>(j) + random.uniform());
+      glm::dvec2 at{static_cast<double>(i) + random.uniform(), static_cast<double>(j) + random.uniform()};
       const Group group = groupAt(seed_, groupOf(i), groupOf(j));
       // Some all the way, others hardly.
       at = group.drawn(at, pull_ * (0.6 + 0.4 * group.vigour) * random.uniform());
@@ -145,7 +145,7 @@ void MetaballLayer::cloudsAt(double secondsAfter, const glm::dvec2& driftedM, co
       Cloud cloud;
       cloud.baseM = {at.x * cellM_ + driftedM.x, at.y * cellM_ + driftedM.y, layer_.baseM};
       // Many small ones for each large one, of which most stand together.
-      const double u = random.uniform() * (0.45 + 0.65 * group.vigour);
+      const double u = std::min(random.uniform() * (0.45 + 0.65 * group.vigour), 1.0);
       cloud.widthM =
           widthM * (leastSize_ + (1.0 - leastSize_) * u * u) * (0.4 + 0.6 * glm::smoothstep(0.0, 1.0, age));
       cloud.turnRad = 2.0 * kPi * random.uniform();
