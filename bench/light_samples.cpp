@@ -2,12 +2,13 @@
 // Examples for tools/fit_cloud_light.py: points that eyes see in the clouds of random skies, what the shader
 // knows there, and what the reference says is scattered there.
 //
-//   light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED
+//   light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED [LIKE.toml]
 //
 // Rows of kColumns float32 values are appended to OUT, POINTS from each of SKIES random skies, PATHS paths
-// each. No sky of bench/truth is among them. Or POINTS that the camera of a scene with one layer sees: to say
-// where the fit is wrong; of each sky what the fit makes of it is printed. The light volume is as fine as in
-// high quality for scenes, as in medium quality for random skies: the fit serves both.
+// each. No sky of bench/truth is among them. Or from each of SKIES skies like that of LIKE.toml
+// (likeScene()), as its camera would see them. Or POINTS that the camera of a scene with one layer sees: to
+// say where the fit is wrong; of each sky what the fit makes of it is printed. The light volume is as fine as
+// in high quality for scenes, as in medium quality for random skies: the fit serves both.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -253,12 +254,28 @@ Sky randomSky(Random& random) {
   return sky;
 }
 
-Sky skyOf(const std::string& path) {
-  scene::Scene scene = scene::readSceneFile(path).scene;
+// Another place of such a sky, on another day: other clouds, more or fewer and thicker or thinner ones, an
+// hour earlier or later at most, seen by an eye above the ground from another height, and about as far from
+// the sun.
+scene::Scene likeScene(scene::Scene scene, Random& random) {
+  scene.seed = 1000 + static_cast<std::int64_t>(random.below(1000000));
+  scene.time = addSeconds(scene.time, std::floor(3600.0 * (2.0 * unit(random) - 1.0)));
+  for (weather::Layer& layer : scene.layers) {
+    layer.oktas = std::clamp(layer.oktas + 2.0 * unit(random) - 1.0, 1.0, kOktas);
+    layer.extinctionPerM *= std::exp2(unit(random) - 0.5);
+  }
+  scene::Camera& camera = scene.camera;
+  if (camera.headingDeg)
+    camera.headingDeg = std::remainder(*camera.headingDeg + 60.0 * (unit(random) - 0.5), 360.0);
+  if (camera.eyeM > 10.0) camera.eyeM *= std::exp2(0.6 * (unit(random) - 0.5));
+  return scene;
+}
+
+Sky skyOf(scene::Scene scene) {
   scene.output.quality = scene::Quality::kHigh;
   Sky sky{scene::buildSky(scene, scene.atS), glm::dvec3(0.0), std::nullopt};
   if (sky.state.weather.layers.size() != 1)
-    throw ParameterError(fmt::format("{}: {} layers; expected one", path, sky.state.weather.layers.size()));
+    throw ParameterError(fmt::format("{} layers; expected one", sky.state.weather.layers.size()));
   sky.sun = glm::normalize(glm::dvec3(sky.state.lights[0].direction));
   sky.camera = scene::projectorOf(sky.state);
   return sky;
@@ -315,8 +332,8 @@ FitAgainstTruth judge(const std::vector<float>& rows) {
 }
 
 int run(int argc, char** argv) {
-  if (argc != 6) {
-    fmt::print(stderr, "usage: light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED\n");
+  if (argc != 6 && argc != 7) {
+    fmt::print(stderr, "usage: light_samples OUT.f32 SKIES|SCENE.toml POINTS PATHS SEED [LIKE.toml]\n");
     return 2;
   }
   const bool ofScene = std::string_view(argv[2]).ends_with(".toml");
@@ -326,11 +343,15 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "light_samples: SKIES, POINTS and PATHS must be whole numbers from 1 on\n");
     return 2;
   }
+  std::optional<scene::Scene> seenScene;
+  if (ofScene || argc == 7) seenScene = scene::readSceneFile(argv[ofScene ? 2 : 6]).scene;
   gpu::Context context;
   render::LightVolumePass pass;
   for (int sky = 0; sky < skies; ++sky) {
     Random random(hashOf(seed, sky));
-    const Sky seen = ofScene ? skyOf(argv[2]) : randomSky(random);
+    const Sky seen = ofScene     ? skyOf(*seenScene)
+                     : seenScene ? skyOf(likeScene(*seenScene, random))
+                                 : randomSky(random);
     const scene::SkyState& state = seen.state;
     const glm::dvec3 sun = seen.sun;
     const weather::Layer& layer = state.weather.layers[0];
@@ -432,7 +453,7 @@ int run(int argc, char** argv) {
           row[kBelow] = static_cast<float>(below) / static_cast<float>(paths);
           row[kPaths] = static_cast<float>(paths);
           row[kGenus] = static_cast<float>(layer.genus);
-          row[kSky] = static_cast<float>(seed * 100000 + static_cast<std::uint64_t>(sky));
+          row[kSky] = static_cast<float>(seed * 1000 + static_cast<std::uint64_t>(sky));
           row[kDistance] = static_cast<float>(distance);
           break;
         }

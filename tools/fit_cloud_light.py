@@ -3,7 +3,7 @@
 """Fits the network of shaders/lib/cloud_light_fit.glsl to examples written by bench/light_samples.
 
     light_samples EXAMPLES.f32 200 700 8 1
-    light_samples LIKE.f32 SCENE.toml 700 8 101
+    light_samples LIKE.f32 60 700 8 101 SCENE.toml
     tools/fit_cloud_light.py EXAMPLES.f32... LIKE.f32 LIKE.f32 [--write shaders/lib/cloud_light_fit.glsl] [--steps 6000]
 
 Examples of a file that is named several times count as often.

@@ -3,9 +3,10 @@
 // it as they were. Compiled for a number of cells (WELKIN_CELLS); four cells to a texel, four textures one above another.
 
 uniform sampler3D uDepths, uSources;  // of the cells: pass/fluence_cells.frag
-uniform sampler3D uBefore;            // fluence
+uniform sampler3D uFluence, uBefore;  // as it is, and a step ago
 uniform vec4 uCells[WELKIN_CELLS];    // z: depth, m
 uniform float uColumnM;               // side of a column
+uniform float uWeight;                // of what this step finds; the rest is as it was a step ago
 
 layout(location = 0) out vec4 outFluence[4];
 
@@ -17,7 +18,7 @@ const int kTexels = (WELKIN_CELLS + 3) / 4;
 float diffusivity(float depth, float heightM) { return 1.0 / (3.0 * (depth / heightM + 1.0 / kAirPathM)); }
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(uBefore, 0).xy - 1;
+  ivec2 at = ivec2(gl_FragCoord.xy), last = textureSize(uFluence, 0).xy - 1;
   vec4 depths[kTexels], sources[kTexels];
   for (int i = 0; i < kTexels; ++i) {
     depths[i] = texelFetch(uDepths, ivec3(at, i), 0);
@@ -34,7 +35,7 @@ void main() {
     ivec2 step = side < 2 ? ivec2(2 * side - 1, 0) : ivec2(0, 2 * side - 5);
     ivec2 beside = clamp(at + step, ivec2(0), last);
     for (int i = 0; i < kTexels; ++i) {
-      vec4 depth = texelFetch(uDepths, ivec3(beside, i), 0), fluence = texelFetch(uBefore, ivec3(beside, i), 0);
+      vec4 depth = texelFetch(uDepths, ivec3(beside, i), 0), fluence = texelFetch(uFluence, ivec3(beside, i), 0);
       for (int j = 0; j < 4; ++j) {
         int k = 4 * i + j;
         if (k >= WELKIN_CELLS) break;
@@ -62,8 +63,8 @@ void main() {
   }
   for (int k = WELKIN_CELLS - 2; k >= 0; --k) coming[k] += upward[k] * coming[k + 1];
   for (int k = WELKIN_CELLS; k < 16; ++k) coming[k] = 0.0;
-  outFluence[0] = vec4(coming[0], coming[1], coming[2], coming[3]);
-  outFluence[1] = vec4(coming[4], coming[5], coming[6], coming[7]);
-  outFluence[2] = vec4(coming[8], coming[9], coming[10], coming[11]);
-  outFluence[3] = vec4(coming[12], coming[13], coming[14], coming[15]);
+  for (int i = 0; i < 4; ++i) {
+    vec4 found = vec4(coming[4 * i], coming[4 * i + 1], coming[4 * i + 2], coming[4 * i + 3]);
+    outFluence[i] = max(mix(texelFetch(uBefore, ivec3(at, i), 0), found, uWeight), vec4(0.0f));
+  }
 }

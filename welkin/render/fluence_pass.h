@@ -31,9 +31,10 @@ class FluencePass {
   const gpu::Texture3D& fluence() const { return fluences_[front_]; }
 
  private:
+  float columnM(int cascade) const;  // side of its columns
   void cells(int cascade, bool sources, const gpu::Texture3D& lightVolume);
   void start(int cascade);
-  void relax(int cascade, bool first);  // first: of the widest cascade
+  void relax(int index, float columnM);
   void store(int cascade);
 
   gpu::FullscreenTriangle triangle_;
@@ -46,7 +47,7 @@ class FluencePass {
     gpu::Framebuffer target;
   };
   Packed depths_, sources_;
-  std::array<Packed, 2> steps_;
+  std::array<Packed, 3> steps_;
   std::size_t last_ = 0;
   gpu::Framebuffer slice_;
   std::array<gpu::Texture3D, 2> fluences_;
@@ -54,7 +55,6 @@ class FluencePass {
   std::vector<shading::LightVolumeLayout::Band> bands_;
   int slices_ = 0;
   bool towardsSun_ = true;
-  float broken_ = 1.0f;  // LightVolumeLayout::broken
   shading::FluenceLayout layout_;
 };
 
