@@ -124,8 +124,8 @@ TEST(Fluence, IsThatOfTheEquations) {
         bias += got - want;
       }
   EXPECT_GT(sum, 0.0);
-  EXPECT_LT(error / sum, 0.08);  // some steps do not solve them to the end
-  EXPECT_LT(std::abs(bias) / sum, 0.04);
+  EXPECT_LT(error / sum, 0.02);  // some steps do not solve them to the end
+  EXPECT_LT(std::abs(bias) / sum, 0.01);
 }
 
 // Nothing is lost: what the sun sends in leaves through top and bottom.
