@@ -229,7 +229,8 @@ void describeConvert(CLI::App* app, ConvertArgs& a) {
       ->type_name("IN");
   app->add_option("out", a.out, "the same")->type_name("OUT");
   add(app, "--grid", a.grid, "NAME",
-      "which grid of a .vdb to read (default density, else the first of floats)");
+      "which grid of a .vdb to read, density[1] for the second of a name (default density, else the first of "
+      "floats)");
   addTexelFile(app, a.file, "what loses nothing", "clamp");
 }
 

@@ -185,10 +185,11 @@ void requireDense(const InputFile& file, const CoordBBox& box, const TexelShape&
 const vdb::Entry& chosen(const InputFile& file, const vdb::Contents& contents, const std::string& name) {
   const vdb::Entry* first = nullptr;
   for (const vdb::Entry& e : contents.grids) {
-    if (!name.empty() && e.name == name && e.type != vdb::kFloatTree)
+    const bool named = e.name == name || e.name + "[0]" == name;
+    if (!name.empty() && named && e.type != vdb::kFloatTree)
       file.fail("the grid \"" + name + "\" is of type " + e.type + "; expected floats");
     if (e.type != vdb::kFloatTree) continue;
-    if (e.name == (name.empty() ? "density" : name)) return e;
+    if (name.empty() ? e.name == "density" : named) return e;
     if (!first) first = &e;
   }
   if (!name.empty()) file.fail("there is no grid \"" + name + '"');
@@ -196,8 +197,14 @@ const vdb::Entry& chosen(const InputFile& file, const vdb::Contents& contents, c
   return *first;
 }
 
+// Of what is no fog volume, which is what goes without saying.
+constexpr const char* kClass = "class";
+bool isOther(const std::string& gridClass) {
+  return gridClass == "level set" || gridClass == "staggered";
+}
+
 bool isReserved(const std::string& key) {
-  return key.empty() || key == "name" || key == "class" || key == "creator" || key == "vector_type" ||
+  return key.empty() || key == "name" || key == kClass || key == "creator" || key == "vector_type" ||
          key == "value_type" || key.starts_with("is_") || key.starts_with("file_") || key == kBoxMin ||
          key == kBoxMax;
 }
@@ -222,6 +229,10 @@ struct VdbWriter::Impl {
     grid->insertMeta(kBoxMin, openvdb::Vec3IMetadata({0, 0, 0}));
     grid->insertMeta(kBoxMax, openvdb::Vec3IMetadata({shape.nx - 1, shape.ny - 1, shape.nz - 1}));
     for (const auto& [key, text] : notes.metadata) {
+      if (key == kClass && isOther(text)) {
+        grid->setGridClass(FloatGrid::stringToGridClass(text));
+        continue;
+      }
       if (isReserved(key))
         throw ParameterError("cannot write " + path.string() + ": metadata cannot be named \"" + key + '"');
       grid->insertMeta(key, openvdb::StringMetadata(text));
@@ -368,14 +379,14 @@ StoredGrid readGrid(InputFile& file, const std::filesystem::path& path, const Vd
 
   grid.box = boxOf(file, head, *grid.tree);
   grid.shape = shapeOf(file, grid.box, entry.half);
-  grid.notes.name = entry.name;
+  grid.notes.name = entry.ownName;
   for (const vdb::Entry& other : contents.grids)
     if (&other != &entry) grid.notes.leftOut.push_back("grid " + other.name);
   grid.notes.voxelSizeM = head.scale;
   const Coord& min = grid.box.min();
   grid.notes.firstVoxelM = head.translation + head.scale * glm::dvec3(min.x(), min.y(), min.z());
   for (const auto& [key, text] : head.texts)
-    if (!isReserved(key)) grid.notes.metadata[key] = text;
+    if (!isReserved(key) || (key == kClass && isOther(text))) grid.notes.metadata[key] = text;
   return grid;
 }
 

@@ -6,7 +6,9 @@
 // A grid's transform maps voxel (i, j, k) to the metres of its centre: voxel size and the first voxel's place
 // along the axes of texels.h, no rotation. Zero is the background; voxels of exactly zero are not stored. The
 // size of the whole box stands in the grid's metadata ("welkin_box_min", "welkin_box_max"), so that empty
-// margins come back; a grid of other programs gives the box of its active voxels.
+// margins come back; a grid of other programs gives the box of its active voxels. Numbers in the metadata
+// come as text. A grid that is no fog volume has its class ("level set", "staggered") as metadata "class",
+// and is written with it.
 #pragma once
 
 #include <cstdint>
@@ -41,14 +43,17 @@ class VdbWriter : public TexelWriter {
 void writeVdb(const std::filesystem::path& path, const Texels& texels);
 
 struct VdbGrid {
-  std::string name, type;  // type: OpenVDB's, "Tree_float_5_4_3" for instance
-  bool half = false;       // stored as halves
+  std::string name;   // "density[1]" of the second "density"
+  std::string type;   // OpenVDB's, "Tree_float_5_4_3" for instance
+  bool half = false;  // stored as halves
 };
 // The grids of a file, from its table of contents.
 std::vector<VdbGrid> readVdbGrids(const std::filesystem::path& path);
 
 struct VdbReadOptions {
-  std::string grid;  // its name; empty: "density" if there is one, otherwise the first of floats
+  // Its name, "density[1]" for the second of that name; empty: "density" if there is one, otherwise the first
+  // of floats.
+  std::string grid;
 };
 // A grid of floats, dense: r32f, or r16f if stored as halves. Sparse files can be far smaller than what they
 // stand for, so a box is refused that has more than 2^24 voxels and more than 512 for each byte of the file,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -35,7 +36,34 @@ std::uint32_t readCount(InputFile& file, const char* of) {
   return count;
 }
 
-// Texts and vectors are kept, all else is skipped by its length.
+// Numbers of one type as text, the shortest that says them exactly, by blanks.
+template <class Number>
+std::string numbersAsText(InputFile& file, std::uint32_t bytes) {
+  std::string text;
+  for (std::uint32_t i = 0; i < bytes / sizeof(Number); ++i) {
+    char digits[32];
+    text.append(i == 0 ? "" : " ")
+        .append(digits, std::to_chars(digits, digits + sizeof digits, file.get<Number>()).ptr);
+  }
+  return text;
+}
+
+struct NumberType {
+  const char* name;
+  std::uint32_t bytes;
+  std::string (*asText)(InputFile&, std::uint32_t);
+};
+constexpr std::array<NumberType, 9> kNumberTypes = {{{"bool", 1, numbersAsText<std::uint8_t>},
+                                                     {"int32", 4, numbersAsText<std::int32_t>},
+                                                     {"int64", 8, numbersAsText<std::int64_t>},
+                                                     {"float", 4, numbersAsText<float>},
+                                                     {"double", 8, numbersAsText<double>},
+                                                     {"vec2s", 8, numbersAsText<float>},
+                                                     {"vec2d", 16, numbersAsText<double>},
+                                                     {"vec3s", 12, numbersAsText<float>},
+                                                     {"vec3d", 24, numbersAsText<double>}}};
+
+// Texts, numbers and vectors are kept, all else is skipped by its length.
 void readMetadata(InputFile& file, GridHead* head) {
   const std::uint32_t count = readCount(file, "metadata");
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -44,16 +72,27 @@ void readMetadata(InputFile& file, GridHead* head) {
     const auto bytes = file.get<std::uint32_t>();
     if (bytes > file.left())
       file.fail("metadata \"" + name + "\" of " + std::to_string(bytes) + " bytes", at);
+    const auto* const number = std::ranges::find_if(
+        kNumberTypes, [&](const NumberType& n) { return type == n.name && bytes == n.bytes; });
     if (head && type == "string" && bytes <= kLongestText) {
       std::string& text = head->texts[name];
       text.resize(bytes);
       file.read(text.data(), bytes);
     } else if (head && type == "vec3i" && bytes == sizeof(glm::ivec3)) {
       head->vectors[name] = file.get<glm::ivec3>();
+    } else if (head && number != kNumberTypes.end()) {
+      head->texts[name] = number->asText(file, bytes);
     } else {
       file.skip(bytes);
     }
   }
+}
+
+// As OpenVDB's own tools name them: the second "density" is "density[1]".
+void tellApart(std::vector<Entry>& grids) {
+  std::map<std::string, int> seen;
+  for (Entry& e : grids)
+    if (const int before = seen[e.ownName]++; before > 0) e.name += '[' + std::to_string(before) + ']';
 }
 
 void readTransform(InputFile& file, GridHead& head) {
@@ -211,9 +250,10 @@ Contents readContents(InputFile& file) {
   const std::uint32_t count = readCount(file, "grids");
   for (std::uint32_t i = 0; i < count; ++i) {
     Entry entry;
-    entry.name = readText(file);
-    entry.name =
-        entry.name.substr(0, entry.name.find('\x1e'));  // grids of one name are told apart by an ending
+    entry.ownName = readText(file);
+    // Grids of one name are told apart by an ending.
+    entry.ownName.resize(std::min(entry.ownName.find('\x1e'), entry.ownName.size()));
+    entry.name = entry.ownName;
     entry.type = readText(file);
     if (entry.type.ends_with(kHalfEnding)) {
       entry.type.resize(entry.type.size() - std::char_traits<char>::length(kHalfEnding));
@@ -239,6 +279,7 @@ Contents readContents(InputFile& file) {
     contents.grids.push_back(entry);
     file.seek(end);
   }
+  tellApart(contents.grids);
   return contents;
 }
 

@@ -21,7 +21,9 @@
 namespace welkin::io::vdb {
 
 struct Entry {
-  std::string name, type;  // without the ending that says half
+  std::string name;     // in this file alone: "density[1]" of the second "density"
+  std::string ownName;  // "density" of both
+  std::string type;     // without the ending that says half
   bool half = false;
   std::uint64_t gridByte = 0;    // where the grid begins
   std::uint64_t bufferByte = 0;  // where its leaves' values begin; 0: after the topology
@@ -35,7 +37,7 @@ Contents readContents(InputFile& file);
 
 struct GridHead {
   std::uint32_t compression = 0;
-  std::map<std::string, std::string> texts;   // metadata of type string
+  std::map<std::string, std::string> texts;  // metadata of type string; numbers, and vectors of them, as text
   std::map<std::string, glm::ivec3> vectors;  // of type vec3i
   glm::dvec3 scale{1.0}, translation{0.0};    // of the transform
   std::uint64_t treeByte = 0;                 // where the topology begins

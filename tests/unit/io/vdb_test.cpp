@@ -147,9 +147,42 @@ TEST_F(Vdb, TheGridIsChosenByName) {
                 ": the grid \"colour\" is of type Tree_vec3s_5_4_3; expected floats");
   EXPECT_EQ(messageOf<IoError>([&] { readVdb(path(), {.grid = "cold"}); }),
             "cannot read " + path().string() + ": there is no grid \"cold\"");
+  writeByOpenVdb({named("heat", 1.0f), named("density", 2.0f), named("density", 3.0f)}, 6);
+  EXPECT_EQ(readVdb(path()).value(0, 0, 0), 2.0f);
+  EXPECT_EQ(readVdb(path()).notes.leftOut, (std::vector<std::string>{"grid heat", "grid density[1]"}));
+  EXPECT_EQ(readVdb(path(), {.grid = "density[0]"}).value(0, 0, 0), 2.0f);
+  const Texels second = readVdb(path(), {.grid = "density[1]"});
+  EXPECT_EQ(second.value(0, 0, 0), 3.0f);
+  EXPECT_EQ(second.notes.name, "density");
+  EXPECT_EQ(readVdbGrids(path()).back().name, "density[1]");
   writeByOpenVdb({colour}, 6);
   EXPECT_EQ(messageOf<IoError>([&] { readVdb(path()); }),
             "cannot read " + path().string() + ": there is no grid of floats");
+}
+
+TEST_F(Vdb, NumbersAndTheClassAreKept) {
+  const FloatGrid::Ptr grid = FloatGrid::create();
+  grid->setName("density");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->fill(openvdb::CoordBBox(0, 0, 0, 7, 7, 7), 1.0f);
+  grid->insertMeta("frame", openvdb::Int32Metadata(-24));
+  grid->insertMeta("bytes", openvdb::Int64Metadata(1LL << 40));
+  grid->insertMeta("fps", openvdb::FloatMetadata(23.976f));
+  grid->insertMeta("time", openvdb::DoubleMetadata(0.1));
+  grid->insertMeta("looped", openvdb::BoolMetadata(true));
+  grid->insertMeta("wind", openvdb::Vec3SMetadata({1.5f, -2.0f, 0.0f}));
+  grid->insertMeta("author", openvdb::StringMetadata("me"));
+  writeByOpenVdb({grid}, 6);
+  const Texels texels = readVdb(path());
+  const std::map<std::string, std::string> wanted = {{"author", "me"},       {"bytes", "1099511627776"},
+                                                     {"class", "level set"}, {"fps", "23.976"},
+                                                     {"frame", "-24"},       {"looped", "1"},
+                                                     {"time", "0.1"},        {"wind", "1.5 -2 0"}};
+  EXPECT_EQ((std::map<std::string, std::string>(texels.notes.metadata.begin(), texels.notes.metadata.end())),
+            wanted);
+  writeVdb(path(), texels);
+  EXPECT_EQ(readByOpenVdb()->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(readVdb(path()).notes.metadata, texels.notes.metadata);
 }
 
 TEST_F(Vdb, WhatIsNotADenseBoxIsRefused) {
