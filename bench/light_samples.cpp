@@ -271,11 +271,12 @@ scene::Scene likeScene(scene::Scene scene, Random& random) {
   return scene;
 }
 
-Sky skyOf(scene::Scene scene) {
+// path: where it is from.
+Sky skyOf(scene::Scene scene, const std::string& path) {
   scene.output.quality = scene::Quality::kHigh;
   Sky sky{scene::buildSky(scene, scene.atS), glm::dvec3(0.0), std::nullopt};
   if (sky.state.weather.layers.size() != 1)
-    throw ParameterError(fmt::format("{} layers; expected one", sky.state.weather.layers.size()));
+    throw ParameterError(fmt::format("{}: {} layers; expected one", path, sky.state.weather.layers.size()));
   sky.sun = glm::normalize(glm::dvec3(sky.state.lights[0].direction));
   sky.camera = scene::projectorOf(sky.state);
   return sky;
@@ -339,18 +340,21 @@ int run(int argc, char** argv) {
   const bool ofScene = std::string_view(argv[2]).ends_with(".toml");
   const int skies = ofScene ? 1 : std::atoi(argv[2]), points = std::atoi(argv[3]), paths = std::atoi(argv[4]);
   const auto seed = static_cast<std::uint64_t>(std::atoll(argv[5]));
-  if (skies < 1 || points < 1 || paths < 1) {
-    fmt::print(stderr, "light_samples: SKIES, POINTS and PATHS must be whole numbers from 1 on\n");
+  constexpr int kMostSkies = 1000;  // of one seed: see kSky
+  if (skies < 1 || skies > kMostSkies || points < 1 || paths < 1) {
+    fmt::print(stderr,
+               "light_samples: SKIES (1000 at most), POINTS and PATHS must be whole numbers from 1 on\n");
     return 2;
   }
+  const std::string path = ofScene ? argv[2] : (argc == 7 ? argv[6] : "");
   std::optional<scene::Scene> seenScene;
-  if (ofScene || argc == 7) seenScene = scene::readSceneFile(argv[ofScene ? 2 : 6]).scene;
+  if (!path.empty()) seenScene = scene::readSceneFile(path).scene;
   gpu::Context context;
   render::LightVolumePass pass;
   for (int sky = 0; sky < skies; ++sky) {
     Random random(hashOf(seed, sky));
-    const Sky seen = ofScene     ? skyOf(*seenScene)
-                     : seenScene ? skyOf(likeScene(*seenScene, random))
+    const Sky seen = ofScene     ? skyOf(*seenScene, path)
+                     : seenScene ? skyOf(likeScene(*seenScene, random), path)
                                  : randomSky(random);
     const scene::SkyState& state = seen.state;
     const glm::dvec3 sun = seen.sun;
@@ -453,7 +457,7 @@ int run(int argc, char** argv) {
           row[kBelow] = static_cast<float>(below) / static_cast<float>(paths);
           row[kPaths] = static_cast<float>(paths);
           row[kGenus] = static_cast<float>(layer.genus);
-          row[kSky] = static_cast<float>(seed * 1000 + static_cast<std::uint64_t>(sky));
+          row[kSky] = static_cast<float>(seed * kMostSkies + static_cast<std::uint64_t>(sky));
           row[kDistance] = static_cast<float>(distance);
           break;
         }
